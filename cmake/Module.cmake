@@ -1,0 +1,39 @@
+# Warnings and sanitizers are a target; -Werror is for CI.
+add_library(pbnbrdf_warnings INTERFACE)
+target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow
+                       $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
+if(PBNBRDF_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# pbnbrdf_module(NAME [MODULES module ...] [LIBS target ...] [PRIVATE_LIBS target ...])
+#
+# The library pbnbrdf_NAME from src/NAME/*.cc and include/pbnbrdf/NAME/*.h. Each module's headers have an
+# include root of their own, so that including one of a module that isn't linked doesn't compile.
+function(pbnbrdf_module name)
+  cmake_parse_arguments(M "" "" "MODULES;LIBS;PRIVATE_LIBS" ${ARGN})
+  set(root ${PROJECT_BINARY_DIR}/include_roots/${name})
+  file(MAKE_DIRECTORY ${root}/pbnbrdf)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/include/pbnbrdf/${name} ${root}/pbnbrdf/${name} SYMBOLIC)
+
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cc)
+  if(sources)
+    set(scope PUBLIC)
+    add_library(pbnbrdf_${name} STATIC ${sources})
+    target_link_libraries(pbnbrdf_${name} PRIVATE $<BUILD_INTERFACE:pbnbrdf_warnings>)
+  else()
+    set(scope INTERFACE)
+    add_library(pbnbrdf_${name} INTERFACE)
+  endif()
+  target_compile_features(pbnbrdf_${name} ${scope} cxx_std_20)
+  target_include_directories(pbnbrdf_${name} ${scope} $<BUILD_INTERFACE:${root}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM M_MODULES PREPEND pbnbrdf_)
+  target_link_libraries(pbnbrdf_${name} ${scope} ${M_MODULES} ${M_LIBS})
+  if(M_PRIVATE_LIBS)
+    target_link_libraries(pbnbrdf_${name} PRIVATE ${M_PRIVATE_LIBS})
+  endif()
+  set_target_properties(pbnbrdf_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY PBNBRDF_MODULES pbnbrdf_${name})
+endfunction()

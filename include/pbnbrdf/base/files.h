@@ -1,0 +1,24 @@
+// files.h: whole files in and out, with errors that name the file; nothing is left half-written.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace pbnbrdf {
+
+// The file's size in bytes. Throws Error if it is missing or not a regular file.
+std::uintmax_t FileSize(const std::string& path);
+
+// The file's bytes. Throws Error if it can't be read or is larger than `limit` bytes.
+std::string ReadFile(const std::string& path, std::uintmax_t limit);
+
+// Writes to "<path>.<process id>.part" and renames that to `path`, so that `path` holds either its
+// old content or all of the new. "-" is standard output. Throws Error; the partial file is removed.
+void WriteFile(const std::string& path, std::string_view content);
+
+// Throws Error unless WriteFile(path, ...) has a folder to write to that grants it: asked before a
+// long computation, so that its result isn't lost.
+void CheckWritable(const std::string& path);
+
+}  // namespace pbnbrdf

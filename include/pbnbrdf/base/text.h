@@ -1,0 +1,27 @@
+// text.h: numbers to and from text, independent of the locale, and lists.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pbnbrdf {
+
+// "a,b,c" -> {"a", "b", "c"}; blanks around the parts are dropped; "" -> {""}.
+std::vector<std::string> Split(std::string_view text, char separator);
+
+std::string_view Trim(std::string_view text);
+
+// Throws Error "<field>: '<text>' is not a finite number" unless all of `text` is one.
+double ParseNumber(std::string_view field, std::string_view text);
+
+// Throws Error "<field>: '<text>' is not a whole number".
+long ParseInteger(std::string_view field, std::string_view text);
+
+// The shortest text that reads back as the same double.
+std::string FormatNumber(double value);
+
+// 17 significant digits.
+std::string FormatFullPrecision(double value);
+
+}  // namespace pbnbrdf

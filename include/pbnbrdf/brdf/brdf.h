@@ -1,0 +1,48 @@
+// brdf.h: what every source of reflectance answers.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "pbnbrdf/brdf/direction.h"
+
+namespace pbnbrdf {
+
+// A bidirectional reflectance distribution function f(wi, wo): linear RGB in 1/sr, finite, not
+// multiplied by a cosine. Batches are the unit of work. All members may be called from several
+// threads at once.
+class Brdf {
+ public:
+  virtual ~Brdf() = default;
+
+  // values[n] = f(pairs[n]); 0 where either direction isn't above the horizon, at most
+  // kLargestValue everywhere. Sizes must agree.
+  void Evaluate(std::span<const DirectionPair> pairs, std::span<Rgb> values) const;
+
+  // As Evaluate, but whatever the model itself says below the horizon, where a network goes on
+  // (eqs. 8 and 9 of the paper are taken over the whole domain of angles).
+  virtual void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                                 std::span<Rgb> values) const = 0;
+
+  // Whether f is known at the pair: above the horizon and, for a table, in a bin with data.
+  virtual bool IsKnown(const DirectionPair& pair) const { return pair.AboveHorizon(); }
+
+  // One line: the model and its main parameters.
+  virtual std::string Description() const = 0;
+
+  // Peaks beyond this (1/sr) are cut: narrower lobes than any measurement resolves.
+  static constexpr double kLargestValue = 1e12;
+};
+
+// A Brdf with the same formula for each pair; implementations write one pair's value.
+class PointwiseBrdf : public Brdf {
+ public:
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs, std::span<Rgb> values) const final;
+
+ protected:
+  // Called for pairs above the horizon only.
+  virtual Rgb Value(const DirectionPair& pair) const = 0;
+};
+
+}  // namespace pbnbrdf

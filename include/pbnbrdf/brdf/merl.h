@@ -1,0 +1,62 @@
+// merl.h: tables in the format of the MERL BRDF database [1].
+//
+// A file is three little-endian int32, 90 90 180, and the planes R, G, B of 90 x 90 x 180
+// little-endian float64, index (i_h * 90 + i_d) * 180 + i_p. Stored values times 1/1500, 1.15/1500
+// and 1.66/1500 are f in 1/sr. A bin is known by its lower corner,
+//
+//   theta_h = (pi/2) (i_h/90)^2,  theta_d = (pi/2) i_d/90,  phi_d = pi i_p/180,
+//
+// and phi_d and phi_d + pi are the same by reciprocity. A bin with a negative channel is invalid.
+//
+// [1] W. Matusik, H. Pfister, M. Brand, L. McMillan. A Data-Driven Reflectance Model. ACM TOG 22(3),
+//     2003.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pbnbrdf/brdf/brdf.h"
+
+namespace pbnbrdf {
+
+class MerlBrdf final : public Brdf {
+ public:
+  static constexpr int kThetaH = 90, kThetaD = 90, kPhiD = 180;
+  static constexpr std::size_t kBins = std::size_t{kThetaH} * kThetaD * kPhiD;
+
+  // Throws Error if the file is missing, has other dimensions or another length, or holds values
+  // that aren't finite or no valid bin.
+  static MerlBrdf Read(const std::string& path);
+
+  // `source` at each bin's corner; invalid where it isn't known or a cosine is at most 1e-4.
+  static MerlBrdf Tabulate(const Brdf& source);
+
+  // Throws Error if the file can't be written.
+  void Write(const std::string& path) const;
+
+  // Trilinear between the corners of the bin. Invalid corners carry no weight (that of the others
+  // is normalised); 0 where no corner is valid.
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override;
+
+  // Whether the pair's bin is valid.
+  bool IsKnown(const DirectionPair& pair) const override;
+
+  std::string Description() const override;
+
+  std::size_t valid_bins() const { return valid_bins_; }
+
+  // The stored value of a bin: f / scale, negative if invalid. channel 0, 1, 2.
+  double Stored(int channel, std::size_t bin) const { return planes_[channel * kBins + bin]; }
+
+ private:
+  explicit MerlBrdf(std::vector<double> planes);
+
+  bool IsValid(std::size_t bin) const;
+  Rgb Interpolate(const DirectionPair& pair) const;
+
+  std::vector<double> planes_;  // [channel][theta_h][theta_d][phi_d], as stored in the file
+  std::size_t valid_bins_ = 0;
+};
+
+}  // namespace pbnbrdf

@@ -1,0 +1,34 @@
+// sampling.h: values of a Brdf at random Rusinkiewicz angles.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pbnbrdf/base/names.h"
+#include "pbnbrdf/brdf/brdf.h"
+
+namespace pbnbrdf {
+
+// How theta_h is drawn; theta_d in [0, pi/2) and phi_d in [0, 2 pi) are uniform, phi_h = 0.
+enum class Sampling {
+  kUniform,    // theta_h uniform in [0, pi/2), as NBRDF does
+  kHighlight,  // half of the samples so, half at theta_h = (pi/2) u^4, dense near the mirror
+};
+
+inline constexpr NameTable<Sampling, 2> kSamplings = {
+    {{"uniform", Sampling::kUniform}, {"highlight", Sampling::kHighlight}}};
+
+// The two sets draw theta_d from disjoint grids: they have no sample in common, whatever the seeds.
+enum class SampleSet { kTraining, kHeldOut };
+
+struct BrdfSample {
+  DirectionPair pair;
+  Rgb value;  // f in 1/sr, >= 0
+};
+
+// `count` samples at which `brdf` is known. The same arguments give the same samples. Throws Error
+// if next to no angles are known (fewer than 1 in 10,000).
+std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
+                                    std::size_t count, std::uint64_t seed);
+
+}  // namespace pbnbrdf

@@ -1,0 +1,50 @@
+// kernels.h: the inner loops, for batches of kBatch samples, in single and double precision. Each is
+// compiled for several instruction sets, and the best one that the processor has is chosen when
+// it is called. T is float or double.
+//
+// Two layouts: by feature, x[i * kBatch + n], for passes through a network; by sample,
+// x[n * stride + i], for sums over samples. Strides are in elements.
+#pragma once
+
+#include <cstddef>
+
+namespace pbnbrdf::kernels {
+
+inline constexpr int kBatch = 128;
+
+// Rows laid out by sample are padded with zeros to a multiple of this.
+inline constexpr int kPad = 16;
+constexpr int Padded(int size) { return (size + kPad - 1) / kPad * kPad; }
+
+// y = W x + b. By feature: x in x kBatch, y out x kBatch. layer: [W | b], row-major, out x (in + 1).
+template <typename T>
+void Dense(const T* layer, int out, int in, const T* x, T* y);
+
+// x = W' y, the bias left out. Shapes as for Dense.
+template <typename T>
+void DenseTransposed(const T* layer, int out, int in, const T* y, T* x);
+
+// In place; absolute error below 1e-6 (float) or 1e-14 (double). count: a multiple of kBatch.
+template <typename T>
+void Tanh(T* x, std::size_t count);
+
+// out[n][(i, j)] = sum over r of a[n][r][i] b[n][r][j], for n < kBatch, r < rows. By sample:
+//   a: row stride Padded(na), sample stride rows * Padded(na), kPad readable elements behind the
+//      last sample; likewise b with nb.
+//   out: pairs (i, j) in order, j fastest; with `symmetric` (a == b) those with j >= i only. Sample
+//      stride out_stride, at least kPad more than there are pairs: kPad zeros follow them.
+template <typename T>
+void PairProducts(const T* a, int na, const T* b, int nb, int rows, bool symmetric, T* out,
+                  int out_stride);
+
+// c[i][j] += sum over n < kBatch of x[n][i] y[n][j]: x by sample with p columns, y with q. The strides
+// must cover Padded(p) and Padded(q), c Padded(p) rows of stride Padded(q) doubles. Sums of kBatch
+// terms are in precision T.
+template <typename T>
+void AddTransposedProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,
+                          double* c);
+
+// The instruction set in use: "AVX3", "AVX2", ...
+const char* InstructionSet();
+
+}  // namespace pbnbrdf::kernels

@@ -1,0 +1,48 @@
+// mlp.h: the network for one input, templated on the scalar: the reference that ceres::Jet runs
+// through and that the batched kernels are tested against.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "pbnbrdf/network/network_shape.h"
+
+namespace pbnbrdf {
+
+template <typename T>
+T Activate(Activation activation, const T& x) {
+  using std::tanh;
+  if (activation == Activation::kTanh) return tanh(x);
+  return x > T(0.0) ? x : T(0.0);
+}
+
+// The last layer's values z, before the output unit. input: in(0) numbers; layers: a pointer to each
+// layer's block (network_shape.h); z: kChannels numbers.
+template <typename T>
+void EvaluateMlp(const NetworkShape& shape, const double* input, T const* const* layers, T* z) {
+  std::vector<T> from(input, input + shape.in(0)), to;
+  for (int layer = 0; layer < shape.num_layers(); ++layer) {
+    const T* row = layers[layer];
+    to.assign(shape.out(layer), T(0.0));
+    for (T& y : to) {
+      y = row[from.size()];
+      for (std::size_t i = 0; i < from.size(); ++i) y += row[i] * from[i];
+      if (layer + 1 < shape.num_layers()) y = Activate(shape.activation(), y);
+      row += from.size() + 1;
+    }
+    from.swap(to);
+  }
+  std::copy(from.begin(), from.end(), z);
+}
+
+// The output unit: the reflectance while fitting, f^ = expm1(z) > -1, smooth in z. What is evaluated
+// is max(0, f^), as with NBRDF; a clamp has no gradient, so none stands in the fit.
+template <typename T>
+T Reflectance(const T& z) {
+  using std::expm1;
+  return expm1(z);
+}
+
+}  // namespace pbnbrdf

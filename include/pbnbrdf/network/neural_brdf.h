@@ -1,0 +1,43 @@
+// neural_brdf.h: a fitted network as a Brdf, and its file.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pbnbrdf/brdf/brdf.h"
+#include "pbnbrdf/network/network_shape.h"
+
+namespace pbnbrdf {
+
+// f = max(0, expm1(z)), z the network's output at the encoded pair.
+class NeuralBrdf final : public Brdf {
+ public:
+  // What a file says about a fit beyond its network: "terms", "seed", "mean_abs_log_error", ...
+  using Metadata = std::map<std::string, std::string>;
+
+  // weights: shape.num_weights(), finite, laid out as in network_shape.h. Throws Error otherwise.
+  NeuralBrdf(const NetworkShape& shape, std::vector<double> weights, Metadata metadata = {});
+
+  // A safetensors file: tensors fc1.weight (out x in), fc1.bias (out), fc2.weight, ..., F64 or F32,
+  // and in __metadata__ at least "encoding", "activation" and "output" ("expm1"). Throws Error.
+  static NeuralBrdf Read(const std::string& path);
+
+  // Tensors of double precision. Throws Error.
+  void Write(const std::string& path) const;
+
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override;
+  std::string Description() const override;
+
+  const NetworkShape& shape() const { return shape_; }
+  const std::vector<double>& weights() const { return weights_; }
+  const Metadata& metadata() const { return metadata_; }
+
+ private:
+  NetworkShape shape_;
+  std::vector<double> weights_;
+  Metadata metadata_;
+};
+
+}  // namespace pbnbrdf

@@ -1,0 +1,77 @@
+// fit_problem.h: the description of a fit: network, terms, samples. With a material it is a complete
+// least-squares problem: minimise over the network's weights
+//
+//   1/2 sum over terms t of weight_t * mean over samples of rho(|r_t|^2)  +  1/2 weight_e |r_e|^2,
+//
+// r_t the residuals of the log and chromaticity terms (eqs. 6, 7) at a sample, rho the robust loss,
+// r_e those of the energy term (eq. 5) over all strata of incident angles.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pbnbrdf/base/names.h"
+#include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/network/network_shape.h"
+
+namespace ceres {
+class LossFunction;
+}
+
+namespace pbnbrdf {
+
+enum class Loss { kL2, kSoftL1, kHuber, kCauchy };
+
+inline constexpr NameTable<Loss, 4> kLosses = {{{"l2", Loss::kL2},
+                                                {"soft_l1", Loss::kSoftL1},
+                                                {"huber", Loss::kHuber},
+                                                {"cauchy", Loss::kCauchy}}};
+
+// Of the network's passes; residuals, their derivatives and all long sums are always double.
+enum class Precision { kSingle, kDouble };
+
+inline constexpr NameTable<Precision, 2> kPrecisions = {
+    {{"single", Precision::kSingle}, {"double", Precision::kDouble}}};
+
+struct FitProblem {
+  // The network.
+  Encoding encoding = Encoding::kMultiscale;
+  std::vector<int> hidden = {21, 21};
+  Activation activation = Activation::kTanh;
+
+  // The terms' weights, >= 0; 0: the term is absent. At least one > 0.
+  double log_weight = 1.0;
+  double chromaticity_weight = 0.0;
+  double energy_weight = 0.0;
+
+  Loss loss = Loss::kSoftL1;
+  double loss_scale = 0.003;  // > 0, in units of the residuals: where rho turns from square to linear
+
+  // The training samples.
+  Sampling sampling = Sampling::kHighlight;
+  std::size_t samples = 20000;
+  std::uint64_t seed = 1;  // of the samples and of the initial weights
+
+  // The energy term's quadrature: strata of incident angles, equal in solid angle, and nodes for each.
+  int energy_strata = 16;
+  int energy_theta = 64;
+  int energy_phi = 32;
+
+  Precision precision = Precision::kSingle;
+
+  NetworkShape Shape() const { return NetworkShape(encoding, hidden, activation); }
+
+  // Throws Error, naming the field, its value and what it must be.
+  void Validate() const;
+};
+
+// rho, or null for l2, which Ceres takes for rho(s) = s.
+std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale);
+
+// Uniform (Glorot and Bengio 2010); the last layer's biases are the mean of log(1 + f) over the
+// samples. shape.num_weights() numbers.
+std::vector<double> InitialWeights(const NetworkShape& shape,
+                                   const std::vector<BrdfSample>& samples, std::uint64_t seed);
+
+}  // namespace pbnbrdf

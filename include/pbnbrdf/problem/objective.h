@@ -1,0 +1,43 @@
+// objective.h: the cost of a fit, its gradient and its Gauss-Newton matrix at given weights: all that
+// any solver needs to know of a fit.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/problem/fit_problem.h"
+
+namespace pbnbrdf {
+
+// After robust weighting (rows scaled by sqrt(rho'), as Ceres' corrector does), with J the Jacobian of
+// all residuals r, P weights:
+struct Linearization {
+  double cost = 0.0;             // fit_problem.h
+  std::vector<double> gradient;  // J'r, P
+  std::vector<double> hessian;   // J'J, P x P, symmetric
+};
+
+class Objective {
+ public:
+  virtual ~Objective() = default;
+
+  virtual const NetworkShape& shape() const = 0;
+
+  // The cost; not finite where the network overflows. weights: shape().num_weights().
+  virtual double Cost(const double* weights) = 0;
+
+  // False, with `at` unspecified, if the cost or a derivative isn't finite.
+  virtual bool Linearize(const double* weights, Linearization* at) = 0;
+
+  // Mean over samples and channels of |log1p(f cos_i) - log1p(max(0, f^) cos_i)|.
+  virtual double MeanAbsLogError(const double* weights) = 0;
+};
+
+// `problem` must be valid. Work is shared among the threads that TBB grants; the result doesn't
+// depend on their number.
+std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
+                                         const std::vector<BrdfSample>& samples);
+
+}  // namespace pbnbrdf

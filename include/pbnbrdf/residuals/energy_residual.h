@@ -1,0 +1,43 @@
+// energy_residual.h: the energy amplification term, eq. 5, of one stratum of incident angles.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "pbnbrdf/network/mlp.h"
+
+namespace pbnbrdf {
+
+// r_c = sqrt(w) max(0, a_c - 1),  a_c = sum over nodes m of v_m max(0, f^_c,m),  c = R, G, B,
+// the directional albedo by quadrature;  f^_c,m = expm1(z_c,m), clamped as it is when evaluated.
+//   z         T[M][3], the network's outputs at the nodes.
+//   residuals T[3], unitless.
+class EnergyResidual {
+ public:
+  static constexpr int kNumResiduals = 3;
+
+  // solid_angle: w, of the stratum, sr. node_weights: v_m > 0, cosine included (brdf/albedo.h).
+  EnergyResidual(double solid_angle, std::vector<double> node_weights)
+      : sqrt_w_(std::sqrt(solid_angle)), v_(std::move(node_weights)) {}
+
+  std::size_t num_nodes() const { return v_.size(); }
+
+  template <typename T>
+  void operator()(const T* z, T* residuals) const {
+    T albedo[3] = {T(0.0), T(0.0), T(0.0)};
+    for (std::size_t m = 0; m < v_.size(); ++m) {
+      for (int c = 0; c < 3; ++c) {
+        if (z[3 * m + c] > T(0.0)) albedo[c] += v_[m] * Reflectance(z[3 * m + c]);
+      }
+    }
+    for (int c = 0; c < 3; ++c) {
+      residuals[c] = albedo[c] > T(1.0) ? sqrt_w_ * (albedo[c] - T(1.0)) : T(0.0);
+    }
+  }
+
+ private:
+  double sqrt_w_;
+  std::vector<double> v_;
+};
+
+}  // namespace pbnbrdf

@@ -1,0 +1,64 @@
+// fit.h: fits a neural BRDF to a material: the library's main entry.
+//
+//   const auto material = pbnbrdf::OpenBrdf("gold.binary");
+//   const pbnbrdf::Fit fit = pbnbrdf::FitBrdf(*material, pbnbrdf::FitProblem{}, {});
+//   fit.network.Write("gold.safetensors");
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/problem/ceres_problem.h"
+#include "pbnbrdf/problem/fit_problem.h"
+
+namespace pbnbrdf {
+
+struct FitProgress {
+  int iteration = 0;
+  double cost = 0.0;           // fit_problem.h
+  double heldout_error = 0.0;  // mean |eq. 6| over held-out samples and channels
+  double seconds = 0.0;        // since the start, without evaluating heldout_error
+};
+
+struct FitOptions {
+  JacobianMethod jacobian = JacobianMethod::kCondensed;
+  int max_iterations = 150;          // >= 0
+  double max_seconds = 3600.0;       // > 0
+  double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
+  int threads = 0;                   // 0: as many as the machine has
+  // Called after each iteration if set; false stops the fit with the best weights so far.
+  std::function<bool(const FitProgress&)> on_iteration;
+
+  // Throws Error, naming the field, its value and what it must be.
+  void Validate() const;
+};
+
+enum class Termination { kConverged, kMaxIterations, kMaxSeconds, kInterrupted };
+
+inline constexpr NameTable<Termination, 4> kTerminations = {
+    {{"converged", Termination::kConverged},
+     {"max_iterations", Termination::kMaxIterations},
+     {"max_seconds", Termination::kMaxSeconds},
+     {"interrupted", Termination::kInterrupted}}};
+
+struct FitSummary {
+  double initial_cost = 0.0, final_cost = 0.0;
+  int iterations = 0;
+  double seconds = 0.0;  // with sampling the material, without reading it or evaluating errors
+  Termination termination = Termination::kConverged;
+  std::string message;  // the solver's own words
+};
+
+struct Fit {
+  NeuralBrdf network;
+  FitSummary summary;
+};
+
+// Levenberg-Marquardt (Ceres' trust region). The same arguments give the same network to the last
+// bit, whatever the number of threads. Throws Error if the problem or the options are invalid, the
+// material has next to no data, or the solver finds no usable step.
+Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
+
+}  // namespace pbnbrdf

@@ -1,0 +1,79 @@
+#include "pbnbrdf/base/files.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
+
+void WriteStandardOutput(std::string_view content) {
+  errno = 0;
+  if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
+      std::fflush(stdout) != 0) {
+    Fail("standard output: cannot write: ", Reason());
+  }
+}
+
+}  // namespace
+
+std::uintmax_t FileSize(const std::string& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (!fs::exists(status)) Fail(path, ": no such file");
+  if (!fs::is_regular_file(status)) Fail(path, ": not a regular file");
+  const std::uintmax_t size = fs::file_size(path, code);
+  if (code) Fail(path, ": cannot read: ", code.message());
+  return size;
+}
+
+std::string ReadFile(const std::string& path, std::uintmax_t limit) {
+  const std::uintmax_t size = FileSize(path);
+  if (size > limit) Fail(path, ": ", size, " bytes, at most ", limit, " were expected");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) Fail(path, ": cannot read: ", Reason());
+  std::string bytes(size, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size) {
+    Fail(path, ": cannot read: got ", in.gcount(), " of ", size, " bytes");
+  }
+  return bytes;
+}
+
+void WriteFile(const std::string& path, std::string_view content) {
+  if (path == "-") return WriteStandardOutput(content);
+  const std::string partial = StrCat(path, ".", getpid(), ".part");
+  errno = 0;
+  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (!out || std::rename(partial.c_str(), path.c_str()) != 0) {
+    const std::string reason = Reason();
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    Fail(path, ": cannot write: ", reason);
+  }
+}
+
+void CheckWritable(const std::string& path) {
+  if (path == "-") return;
+  if (path.empty()) Fail("an output file's name is empty");
+  if (fs::is_directory(path)) Fail(path, ": cannot write: is a folder");
+  fs::path folder = fs::path(path).parent_path();
+  if (folder.empty()) folder = ".";
+  if (!fs::is_directory(folder)) Fail(path, ": cannot write: no folder ", folder.string());
+  if (access(folder.c_str(), W_OK) != 0) Fail(path, ": cannot write: ", Reason());
+}
+
+}  // namespace pbnbrdf

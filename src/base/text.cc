@@ -1,0 +1,64 @@
+#include "pbnbrdf/base/text.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+namespace {
+
+template <typename T>
+bool ParseAll(std::string_view text, T* value) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), *value);
+  return code == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+std::string_view Trim(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const auto first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string> Split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.emplace_back(Trim(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+double ParseNumber(std::string_view field, std::string_view text) {
+  double value = 0.0;
+  if (!ParseAll(Trim(text), &value) || !std::isfinite(value)) {
+    Fail(field, ": '", text, "' is not a finite number");
+  }
+  return value;
+}
+
+long ParseInteger(std::string_view field, std::string_view text) {
+  long value = 0;
+  if (!ParseAll(Trim(text), &value)) Fail(field, ": '", text, "' is not a whole number");
+  return value;
+}
+
+std::string FormatNumber(double value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  return std::string(buffer, result.ptr);
+}
+
+std::string FormatFullPrecision(double value) {
+  char buffer[40];
+  const auto result =
+      std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::general, 17);
+  return std::string(buffer, result.ptr);
+}
+
+}  // namespace pbnbrdf

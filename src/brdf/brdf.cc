@@ -1,0 +1,24 @@
+#include "pbnbrdf/brdf/brdf.h"
+
+#include <algorithm>
+
+namespace pbnbrdf {
+
+void Brdf::Evaluate(std::span<const DirectionPair> pairs, std::span<Rgb> values) const {
+  EvaluateUnclipped(pairs, values);
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (!pairs[n].AboveHorizon()) values[n] = {};
+  }
+}
+
+void PointwiseBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                                      std::span<Rgb> values) const {
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    values[n] = pairs[n].AboveHorizon() ? Value(pairs[n]) : Rgb{};
+    for (double& value : values[n]) {
+      value = value < kLargestValue ? value : kLargestValue;  // NaN too
+    }
+  }
+}
+
+}  // namespace pbnbrdf

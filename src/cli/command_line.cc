@@ -1,0 +1,176 @@
+#include "command_line.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/base/text.h"
+
+namespace pbnbrdf::cli {
+namespace {
+
+constexpr int kDeepestFlagfile = 8;
+constexpr std::uintmax_t kLargestFlagfile = 1 << 20;
+
+template <typename... Parts>
+[[noreturn]] void FailUsage(const Parts&... parts) {
+  throw UsageError(StrCat(parts...));
+}
+
+// The number of letters to insert, delete or replace to get from a to b (Levenshtein).
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
+    }
+  }
+  return row.back();
+}
+
+std::string NearestFlag(const Command& command, const std::string& name) {
+  return *std::min_element(command.flags.begin(), command.flags.end(),
+                           [&](const std::string& a, const std::string& b) {
+                             return EditDistance(name, a) < EditDistance(name, b);
+                           });
+}
+
+class Parser {
+ public:
+  explicit Parser(const Command& command) : command_(command) {}
+
+  void Parse(const std::vector<std::string>& arguments, int depth) {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const std::string& text = arguments[i];
+      if (!text.starts_with("-") || text == "-") {
+        TakeArgument(text);
+        continue;
+      }
+      std::string name = text.substr(text.starts_with("--") ? 2 : 1);
+      std::string value;
+      const std::size_t equals = name.find('=');
+      if (equals != std::string::npos) {
+        value = name.substr(equals + 1);
+        name.resize(equals);
+      } else if (IsSwitch(name)) {
+        value = "true";
+      } else if (name.starts_with("no") && IsSwitch(name.substr(2))) {
+        name = name.substr(2);
+        value = "false";
+      } else if (IsKnown(name) && i + 1 < arguments.size()) {
+        value = arguments[++i];
+      } else if (IsKnown(name)) {
+        FailUsage("--", name, " needs a value");
+      }
+      Set(name, value, depth);
+    }
+  }
+
+  const std::string& argument() const { return argument_; }
+
+ private:
+  bool IsKnown(const std::string& name) const {
+    return name == "flagfile" || std::count(command_.flags.begin(), command_.flags.end(), name) > 0;
+  }
+
+  bool IsSwitch(const std::string& name) const {
+    gflags::CommandLineFlagInfo info;
+    return IsKnown(name) && gflags::GetCommandLineFlagInfo(name.c_str(), &info) &&
+           info.type == "bool";
+  }
+
+  void TakeArgument(const std::string& text) {
+    if (command_.argument.empty() || !argument_.empty()) {
+      FailUsage("'", text, "' is not a flag; flags begin with --");
+    }
+    argument_ = text;
+  }
+
+  void Set(const std::string& name, const std::string& value, int depth) {
+    if (name == "flagfile") return ReadFlagfile(value, depth);
+    if (!IsKnown(name)) {
+      FailUsage("--", name, " is not a flag of '", command_.name, "'; did you mean --",
+                NearestFlag(command_, name), "? See pbnbrdf ", command_.name, " --help");
+    }
+    if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
+      gflags::CommandLineFlagInfo info;
+      gflags::GetCommandLineFlagInfo(name.c_str(), &info);
+      FailUsage("--", name, "=", value, " is not a ", info.type, " value");
+    }
+  }
+
+  void ReadFlagfile(const std::string& path, int depth) {
+    if (depth >= kDeepestFlagfile) FailUsage(path, ": flagfiles are nested too deep");
+    std::istringstream in(ReadFile(path, kLargestFlagfile));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);) {
+      const std::string text(Trim(line));
+      if (text.empty() || text.starts_with("#")) continue;
+      if (!text.starts_with("-")) FailUsage(path, ": '", text, "' is not a flag");
+      lines.push_back(text);
+    }
+    try {
+      Parse(lines, depth + 1);
+    } catch (const UsageError& error) {
+      FailUsage(path, ": ", error.what());
+    }
+  }
+
+  const Command& command_;
+  std::string argument_;
+};
+
+}  // namespace
+
+std::string ParseFlags(const Command& command, const std::vector<std::string>& arguments) {
+  Parser parser(command);
+  parser.Parse(arguments, 0);
+  if (!command.argument.empty() && parser.argument().empty()) {
+    FailUsage(command.argument, " is missing");
+  }
+  return parser.argument();
+}
+
+std::string HelpText(const Command& command) {
+  std::ostringstream help;
+  help << "pbnbrdf " << command.name << ": " << command.summary << "\n\n" << command.usage;
+  if (!command.flags.empty()) help << "\n";
+  for (const std::string& name : command.flags) {
+    gflags::CommandLineFlagInfo info;
+    gflags::GetCommandLineFlagInfo(name.c_str(), &info);
+    help << "  --" << name << std::string(name.size() < 20 ? 20 - name.size() : 1, ' ')
+         << info.description;
+    if (!info.default_value.empty() && info.type != "bool") {
+      help << " [" << info.default_value << "]";
+    }
+    help << "\n";
+  }
+  if (command.name == "fit") help << "  --flagfile            a file of flags, one a line\n";
+  if (!command.notes.empty()) help << "\n" << command.notes;
+  help << "\nExit status: 0 done, 1 bad input or output, 2 wrong usage.\n";
+  return help.str();
+}
+
+std::vector<std::string> FlagLines(const std::vector<std::string>& names) {
+  std::vector<std::string> lines;
+  for (const std::string& name : names) {
+    std::string value;
+    if (gflags::GetCommandLineOption(name.c_str(), &value)) {
+      lines.push_back(StrCat("--", name, "=", value));
+    }
+  }
+  return lines;
+}
+
+void RequireFlag(const std::string& name, const std::string& value) {
+  if (value.empty()) FailUsage("--", name, " is required");
+}
+
+}  // namespace pbnbrdf::cli

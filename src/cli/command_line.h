@@ -1,0 +1,40 @@
+// command_line.h: subcommands, their flags and their help.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf::cli {
+
+// The command line itself is at fault: exit status 2 instead of 1.
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
+struct Command {
+  std::string name;
+  std::string summary;              // one line
+  std::string usage;                // examples, a line each
+  std::string notes;                // more lines for --help
+  std::vector<std::string> flags;   // those of gflags' that belong to it
+  std::string argument;             // what a positional argument is; empty: there is none
+  int (*run)(const std::string& argument);
+};
+
+// Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of the
+// same, # for comments; later settings replace earlier ones) into gflags' flags. Returns the
+// positional argument, or "". Throws UsageError.
+std::string ParseFlags(const Command& command, const std::vector<std::string>& arguments);
+
+std::string HelpText(const Command& command);
+
+// "--name=value" for each flag that gflags holds, of those named.
+std::vector<std::string> FlagLines(const std::vector<std::string>& names);
+
+// Throws UsageError "--name is required" if the flag's value is empty.
+void RequireFlag(const std::string& name, const std::string& value);
+
+}  // namespace pbnbrdf::cli

@@ -1,0 +1,22 @@
+// commands.h: the subcommands, each in a file of its own.
+#pragma once
+
+#include "command_line.h"
+
+namespace pbnbrdf::cli {
+
+Command FitCommand();
+Command EvalCommand();
+Command TabulateCommand();
+Command ValuesCommand();
+Command InfoCommand();
+
+// How every command that reads a material explains --material.
+inline constexpr char kSourceNotes[] =
+    "Sources of reflectance:\n"
+    "  FILE.binary                  a table in the format of the MERL BRDF database\n"
+    "  sgd:PARAMETERS.csv#MATERIAL  the shifted gamma distribution model (Bagher et al. 2012)\n"
+    "  builtin:NAME                 a material that ships with the program: pbnbrdf info builtin:\n"
+    "  FILE.safetensors             a network that pbnbrdf fit wrote\n";
+
+}  // namespace pbnbrdf::cli

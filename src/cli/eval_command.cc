@@ -1,0 +1,46 @@
+// pbnbrdf eval
+#include <gflags/gflags.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/network/open_brdf.h"
+#include "report.h"
+#include "shared_flags.h"
+
+DEFINE_string(fit, "", "fitted network (.safetensors)");
+DEFINE_bool(json, false, "print one JSON object");
+DEFINE_uint64(eval_samples, 200000, "held-out samples");
+DEFINE_uint64(eval_seed, 1, "of the held-out samples");
+
+namespace pbnbrdf::cli {
+namespace {
+
+int RunEval(const std::string&) {
+  RequireFlag("fit", FLAGS_fit);
+  RequireFlag("material", FLAGS_material);
+  if (FLAGS_eval_samples == 0) throw UsageError("--eval_samples = 0; must be >= 1");
+  const NeuralBrdf fit = NeuralBrdf::Read(FLAGS_fit);
+  const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
+  const nlohmann::ordered_json measures =
+      MeasureFit(*material, fit, fit.weights().size(), FLAGS_eval_samples, FLAGS_eval_seed);
+  std::cout << (FLAGS_json ? measures.dump(2) + "\n" : MeasuresText(measures));
+  return 0;
+}
+
+}  // namespace
+
+Command EvalCommand() {
+  Command command;
+  command.name = "eval";
+  command.summary = "measures a fit against its material";
+  command.usage = "  pbnbrdf eval --fit=gold.safetensors --material=gold.binary --json\n";
+  command.notes = kSourceNotes;
+  command.flags = {"fit", "material", "json", "eval_samples", "eval_seed"};
+  command.run = RunEval;
+  return command;
+}
+
+}  // namespace pbnbrdf::cli

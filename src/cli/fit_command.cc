@@ -1,0 +1,135 @@
+// pbnbrdf fit
+#include <gflags/gflags.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "fit_flags.h"
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/base/text.h"
+#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/solve/fit.h"
+#include "report.h"
+#include "shared_flags.h"
+
+DEFINE_string(summary, "", "write measures, cost, time and the problem to this JSON file");
+DEFINE_bool(quiet, false, "print nothing");
+
+namespace pbnbrdf::cli {
+namespace {
+
+constexpr std::size_t kSummarySamples = 100000;
+constexpr std::uint64_t kSummarySeed = 1;
+
+std::atomic<bool> interrupted = false;
+
+// Ctrl-C asks the fit to stop after the iteration; a second one ends the program.
+void OnInterrupt(int) {
+  interrupted = true;
+  std::signal(SIGINT, SIG_DFL);
+}
+
+void ShowProgress(const FitProgress& progress) {
+  std::fprintf(stderr, "\r\033[Kiteration %d  cost %.4g  held-out error %.5f  %.1f s",
+               progress.iteration, progress.cost, progress.heldout_error, progress.seconds);
+}
+
+NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summary,
+                              const nlohmann::ordered_json& measures, const std::string& flags) {
+  return {{"version", PBNBRDF_VERSION},
+          {"material", FLAGS_material},
+          {"problem", flags},
+          {"seed", StrCat(problem.seed)},
+          {"termination", std::string(NameOf(kTerminations, summary.termination))},
+          {"mean_abs_log_error", FormatNumber(measures["mean_abs_log_error"])},
+          {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}};
+}
+
+nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitProblem& problem,
+                                   const FitSummary& summary, const std::string& flags) {
+  measures["material"] = FLAGS_material;
+  measures["initial_cost"] = summary.initial_cost;
+  measures["cost"] = summary.final_cost;
+  measures["iterations"] = summary.iterations;
+  measures["seconds"] = summary.seconds;
+  measures["seed"] = problem.seed;
+  measures["termination"] = NameOf(kTerminations, summary.termination);
+  measures["message"] = summary.message;
+  measures["version"] = PBNBRDF_VERSION;
+  measures["problem"] = flags;
+  return measures;
+}
+
+// The flags that repeat this fit, as a flagfile.
+std::string ProblemFlagfile() {
+  std::vector<std::string> names = {"material"};
+  for (const auto& group : {ProblemFlagNames(), SolverFlagNames()}) {
+    names.insert(names.end(), group.begin(), group.end());
+  }
+  std::string text;
+  for (const std::string& line : FlagLines(names)) text += line + "\n";
+  return text;
+}
+
+int RunFit(const std::string&) {
+  RequireFlag("material", FLAGS_material);
+  RequireFlag("out", FLAGS_out);
+  const FitProblem problem = ProblemFromFlags();
+  FitOptions options = OptionsFromFlags();
+  CheckWritable(FLAGS_out);
+  if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
+  const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
+
+  const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
+  std::signal(SIGINT, OnInterrupt);
+  options.on_iteration = [&](const FitProgress& progress) {
+    if (show_progress) ShowProgress(progress);
+    return !interrupted;
+  };
+  Fit fit = FitBrdf(*material, problem, options);
+  if (show_progress) std::fprintf(stderr, "\r\033[K");
+
+  const nlohmann::ordered_json measures =
+      MeasureFit(*material, fit.network, fit.network.weights().size(), kSummarySamples, kSummarySeed);
+  const std::string flags = ProblemFlagfile();
+  NeuralBrdf(fit.network.shape(), fit.network.weights(),
+             Describe(problem, fit.summary, measures, flags))
+      .Write(FLAGS_out);
+  if (!FLAGS_summary.empty()) {
+    WriteFile(FLAGS_summary, SummaryJson(measures, problem, fit.summary, flags).dump(2) + "\n");
+  }
+  if (!FLAGS_quiet) {
+    std::cout << FLAGS_out << ": " << fit.network.Description() << "; "
+              << NameOf(kTerminations, fit.summary.termination) << " after "
+              << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
+              << MeasuresText(measures);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command FitCommand() {
+  Command command;
+  command.name = "fit";
+  command.summary = "fits a neural BRDF to a material";
+  command.usage =
+      "  pbnbrdf fit --material=gold.binary --out=gold.safetensors\n"
+      "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary --out=gold.safetensors\n";
+  command.notes = std::string(kSourceNotes) +
+                  "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
+  command.flags = {"material", "out", "summary", "quiet"};
+  for (const auto& group : {ProblemFlagNames(), SolverFlagNames()}) {
+    command.flags.insert(command.flags.end(), group.begin(), group.end());
+  }
+  command.flags.push_back("threads");
+  command.run = RunFit;
+  return command;
+}
+
+}  // namespace pbnbrdf::cli

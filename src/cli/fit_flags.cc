@@ -1,0 +1,116 @@
+#include "fit_flags.h"
+
+#include <gflags/gflags.h>
+
+#include "command_line.h"
+#include "pbnbrdf/base/text.h"
+#include "shared_flags.h"
+
+DEFINE_string(encoding, "multiscale", "the network's input: cartesian | reciprocal | multiscale");
+DEFINE_string(hidden, "21,21", "units of each hidden layer");
+DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
+DEFINE_string(terms, "log,chromaticity,energy",
+              "terms of the cost: log (eq. 6), chromaticity (eq. 7), energy (eq. 5)");
+DEFINE_double(log_weight, 1.0, "weight of the log term");
+DEFINE_double(chromaticity_weight, 0.1, "weight of the chromaticity term");
+DEFINE_double(energy_weight, 1.0, "weight of the energy term");
+DEFINE_int32(energy_strata, 16, "incident angles of the energy term");
+DEFINE_int32(energy_theta, 64, "its quadrature's elevations of the half vector");
+DEFINE_int32(energy_phi, 32, "its quadrature's azimuths of the half vector");
+DEFINE_string(loss, "soft_l1", "robust loss of the log and chromaticity terms: "
+              "l2 | soft_l1 | huber | cauchy");
+DEFINE_double(loss_scale, 0.003, "residual at which the loss turns from square to linear");
+DEFINE_string(sampling, "highlight",
+              "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
+DEFINE_uint64(samples, 20000, "training samples");
+DEFINE_uint64(seed, 1, "of the samples and the initial weights");
+DEFINE_string(precision, "single", "of the network's passes: single | double");
+DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference");
+DEFINE_int32(max_iterations, 150, "stop after so many iterations");
+DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
+DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
+
+namespace pbnbrdf::cli {
+namespace {
+
+// Whatever a flag's value violates is wrong usage.
+template <typename Function>
+auto AsUsage(Function function) {
+  try {
+    return function();
+  } catch (const Error& error) {
+    throw UsageError(StrCat("--", error.what()));
+  }
+}
+
+struct Terms {
+  bool log = false, chromaticity = false, energy = false;
+};
+
+Terms ParseTerms(const std::string& text) {
+  Terms terms;
+  const NameTable<bool*, 3> kNames = {
+      {{"log", &terms.log}, {"chromaticity", &terms.chromaticity}, {"energy", &terms.energy}}};
+  for (const std::string& name : Split(text, ',')) *ParseName(kNames, "terms", name) = true;
+  return terms;
+}
+
+std::vector<int> ParseHidden(const std::string& text) {
+  std::vector<int> sizes;
+  for (const std::string& part : Split(text, ',')) {
+    sizes.push_back(static_cast<int>(std::clamp(ParseInteger("hidden", part), -1L, 1L << 30)));
+  }
+  return sizes;
+}
+
+FitProblem ParseProblem() {
+  const Terms terms = ParseTerms(FLAGS_terms);
+  FitProblem problem;
+  problem.encoding = ParseName(kEncodings, "encoding", FLAGS_encoding);
+  problem.hidden = ParseHidden(FLAGS_hidden);
+  problem.activation = ParseName(kActivations, "activation", FLAGS_activation);
+  problem.log_weight = terms.log ? FLAGS_log_weight : 0.0;
+  problem.chromaticity_weight = terms.chromaticity ? FLAGS_chromaticity_weight : 0.0;
+  problem.energy_weight = terms.energy ? FLAGS_energy_weight : 0.0;
+  problem.energy_strata = FLAGS_energy_strata;
+  problem.energy_theta = FLAGS_energy_theta;
+  problem.energy_phi = FLAGS_energy_phi;
+  problem.loss = ParseName(kLosses, "loss", FLAGS_loss);
+  problem.loss_scale = FLAGS_loss_scale;
+  problem.sampling = ParseName(kSamplings, "sampling", FLAGS_sampling);
+  problem.samples = FLAGS_samples;
+  problem.seed = FLAGS_seed;
+  problem.precision = ParseName(kPrecisions, "precision", FLAGS_precision);
+  problem.Validate();
+  return problem;
+}
+
+FitOptions ParseOptions() {
+  FitOptions options;
+  options.jacobian = ParseName(kJacobianMethods, "jacobian", FLAGS_jacobian);
+  options.max_iterations = FLAGS_max_iterations;
+  options.max_seconds = FLAGS_max_seconds;
+  options.function_tolerance = FLAGS_function_tolerance;
+  options.threads = FLAGS_threads;
+  options.Validate();
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> ProblemFlagNames() {
+  return {"encoding",      "hidden",        "activation",   "terms",      "log_weight",
+          "chromaticity_weight", "energy_weight", "energy_strata", "energy_theta", "energy_phi",
+          "loss",          "loss_scale",    "sampling",     "samples",    "seed",
+          "precision"};
+}
+
+std::vector<std::string> SolverFlagNames() {
+  return {"jacobian", "max_iterations", "max_seconds", "function_tolerance"};
+}
+
+FitProblem ProblemFromFlags() { return AsUsage(ParseProblem); }
+
+FitOptions OptionsFromFlags() { return AsUsage(ParseOptions); }
+
+}  // namespace pbnbrdf::cli

@@ -1,0 +1,84 @@
+// pbnbrdf: the command line. Finds the subcommand, runs it and turns exceptions into one line.
+#include <glog/logging.h>
+
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+#include "commands.h"
+#include "shared_flags.h"
+
+DEFINE_string(material, "", "source of reflectance, see below");
+DEFINE_string(out, "", "file to write");
+DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
+
+namespace pbnbrdf::cli {
+namespace {
+
+std::array<Command, 5> Commands() {
+  return {FitCommand(), EvalCommand(), TabulateCommand(), ValuesCommand(), InfoCommand()};
+}
+
+std::string Overview() {
+  std::string text =
+      "pbnbrdf: fits small neural BRDFs that obey physics to measured materials, by nonlinear\n"
+      "least squares.\n\n"
+      "  pbnbrdf fit --material=builtin:satin-gold --out=gold.safetensors\n"
+      "  pbnbrdf eval --fit=gold.safetensors --material=builtin:satin-gold\n\n"
+      "Commands:\n";
+  for (const Command& command : Commands()) {
+    text += StrCat("  ", command.name, std::string(10 - command.name.size(), ' '), command.summary,
+                   "\n");
+  }
+  return text + "\npbnbrdf COMMAND --help explains each; pbnbrdf --version tells the version.\n";
+}
+
+int Run(const std::vector<std::string>& arguments) {
+  const std::string name = arguments.empty() ? "" : arguments[0];
+  if (name == "--help" || name == "-h" || name == "help") {
+    std::cout << Overview();
+    return 0;
+  }
+  if (name == "--version") {
+    std::cout << "pbnbrdf " << PBNBRDF_VERSION << "\n";
+    return 0;
+  }
+  std::string names;
+  for (const Command& command : Commands()) {
+    names += StrCat(names.empty() ? "" : " | ", command.name);
+    if (command.name != name) continue;
+    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    for (const std::string& argument : rest) {
+      if (argument == "--help" || argument == "-h" || argument == "--helpshort") {
+        std::cout << HelpText(command);
+        return 0;
+      }
+    }
+    return command.run(ParseFlags(command, rest));
+  }
+  if (name.empty()) throw UsageError(StrCat("no command given: ", names, "; see pbnbrdf --help"));
+  throw UsageError(StrCat("'", name, "' is not a command: ", names, "; see pbnbrdf --help"));
+}
+
+}  // namespace
+}  // namespace pbnbrdf::cli
+
+int main(int argc, char** argv) {
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres has to say comes back in its summary
+  google::InitGoogleLogging(argv[0]);
+  const auto fail = [](const char* message, int status) {
+    std::fprintf(stderr, "pbnbrdf: %s\n", message);
+    return status;
+  };
+  try {
+    return pbnbrdf::cli::Run({argv + 1, argv + argc});
+  } catch (const pbnbrdf::cli::UsageError& error) {
+    return fail(error.what(), 2);
+  } catch (const pbnbrdf::Error& error) {
+    return fail(error.what(), 1);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", 1);
+  }
+}

@@ -1,0 +1,52 @@
+#include "report.h"
+
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "pbnbrdf/metrics/brdf_metrics.h"
+
+namespace pbnbrdf::cli {
+
+nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
+                                  std::size_t samples, std::uint64_t seed) {
+  const HeldOutErrors errors = MeasureErrors(material, fit, samples, seed);
+  const Reciprocity reciprocity = MeasureReciprocity(fit);
+  const Energy energy = MeasureEnergy(fit);
+  return {{"mean_abs_log_error", errors.mean_abs_log_error},
+          {"rmse", errors.rmse},
+          {"hrl", reciprocity.hrl},
+          {"hcl", reciprocity.hcl},
+          {"max_directional_albedo", energy.max_directional_albedo},
+          {"eal", energy.eal},
+          {"chromaticity_error", errors.chromaticity_error},
+          {"parameters", parameters},
+          {"samples", errors.samples}};
+}
+
+std::string MeasuresText(const nlohmann::ordered_json& measures) {
+  constexpr std::pair<const char*, const char*> kMeanings[] = {
+      {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6), held-out samples"},
+      {"rmse", "root mean square error of f cos, 1/sr, same samples"},
+      {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
+      {"hcl", "Helmholtz continuity loss (eq. 9)"},
+      {"max_directional_albedo", "over incident angles up to 89.5 degrees; at most 1 is physical"},
+      {"eal", "energy amplification loss (eq. 5), sr"},
+      {"chromaticity_error", "mean |log1p(|f cos|^2) - log1p(|f^ cos|^2)| (eq. 7)"},
+      {"parameters", "numbers that the fit stores"},
+      {"samples", "held-out samples"}};
+  std::ostringstream text;
+  for (const auto& [key, meaning] : kMeanings) {
+    const auto& value = measures.at(key);
+    text << std::left << std::setw(24) << key << std::setw(13);
+    if (value.is_number_float()) {
+      text << std::setprecision(5) << value.get<double>();
+    } else {
+      text << value.dump();
+    }
+    text << meaning << "\n";
+  }
+  return text.str();
+}
+
+}  // namespace pbnbrdf::cli

@@ -1,0 +1,211 @@
+// Written with Highway: this file is compiled once for each instruction set (foreach_target.h).
+#include "pbnbrdf/kernels/kernels.h"
+
+// Vectors are kept in arrays, which those of unknown length can't be; the others are dispensable.
+#define HWY_DISABLED_TARGETS                                                                   \
+  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels.cc"
+#include <hwy/foreach_target.h>
+// clang-format: keep the order
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pbnbrdf::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Rows of the register block of AddTransposedProduct: 3 vectors wide, it fills the register file.
+constexpr int kBlockRows = HWY_MAX_BYTES >= 64 ? 8 : 4;
+constexpr int kBlockVectors = 3;
+static_assert(kPad % kBlockRows == 0);
+
+// kRows outputs at two vectors of samples; W is read as w[o * stride_o + i * stride_i].
+template <int kRows, bool kBias, typename T>
+HWY_INLINE void DenseBlock(const T* w, int stride_o, int stride_i, int in, const T* x, T* y) {
+  const hn::ScalableTag<T> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int n = 0; n < kBatch; n += 2 * lanes) {
+    hn::Vec<decltype(d)> sum[kRows][2];
+    for (int o = 0; o < kRows; ++o) {
+      sum[o][0] = sum[o][1] = kBias ? hn::Set(d, w[o * stride_o + in * stride_i]) : hn::Zero(d);
+    }
+    for (int i = 0; i < in; ++i) {
+      const auto x0 = hn::LoadU(d, x + i * kBatch + n);
+      const auto x1 = hn::LoadU(d, x + i * kBatch + n + lanes);
+      for (int o = 0; o < kRows; ++o) {
+        const auto weight = hn::Set(d, w[o * stride_o + i * stride_i]);
+        sum[o][0] = hn::MulAdd(weight, x0, sum[o][0]);
+        sum[o][1] = hn::MulAdd(weight, x1, sum[o][1]);
+      }
+    }
+    for (int o = 0; o < kRows; ++o) {
+      hn::StoreU(sum[o][0], d, y + o * kBatch + n);
+      hn::StoreU(sum[o][1], d, y + o * kBatch + n + lanes);
+    }
+  }
+}
+
+template <bool kBias, typename T>
+HWY_INLINE void DenseBlocks(const T* w, int stride_o, int stride_i, int out, int in, const T* x,
+                            T* y) {
+  int o = 0;
+  for (; o + 4 <= out; o += 4) {
+    DenseBlock<4, kBias>(w + o * stride_o, stride_o, stride_i, in, x, y + o * kBatch);
+  }
+  for (; o < out; ++o) {
+    DenseBlock<1, kBias>(w + o * stride_o, stride_o, stride_i, in, x, y + o * kBatch);
+  }
+}
+
+template <typename T>
+HWY_INLINE void TanhAll(T* x, std::size_t count) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    hn::StoreU(hn::Tanh(d, hn::LoadU(d, x + i)), d, x + i);
+  }
+}
+
+template <typename T>
+HWY_INLINE void PairProductsOf(const T* a, int na, const T* b, int nb, int rows, bool symmetric,
+                               T* out, int out_stride) {
+  const hn::ScalableTag<T> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int a_stride = Padded(na), b_stride = Padded(nb);
+  for (int n = 0; n < kBatch; ++n) {
+    T* to = out + static_cast<std::size_t>(n) * out_stride;
+    for (int i = 0; i < na; ++i) {
+      const int first = symmetric ? i : 0;
+      // A whole vector is written at the end of each run of pairs; the next run overwrites the rest.
+      for (int j = first; j < nb; j += lanes) {
+        auto sum = hn::Zero(d);
+        for (int r = 0; r < rows; ++r) {
+          sum = hn::MulAdd(hn::Set(d, a[r * a_stride + i]), hn::LoadU(d, b + r * b_stride + j), sum);
+        }
+        hn::StoreU(sum, d, to + (j - first));
+      }
+      to += nb - first;
+    }
+    for (int j = 0; j < kPad; j += lanes) hn::StoreU(hn::Zero(d), d, to + j);
+    a += rows * a_stride;
+    b += rows * b_stride;
+  }
+}
+
+// kBlockRows x kVectors vectors of c.
+template <int kVectors, typename T>
+HWY_INLINE void ProductBlock(const T* x, int x_stride, const T* y, int y_stride, double* c,
+                             int c_stride) {
+  const hn::ScalableTag<T> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  hn::Vec<decltype(d)> sum[kBlockRows][kVectors];
+  for (auto& row : sum) {
+    for (auto& s : row) s = hn::Zero(d);
+  }
+  for (int n = 0; n < kBatch; ++n) {
+    hn::Vec<decltype(d)> from[kVectors];
+    for (int v = 0; v < kVectors; ++v) from[v] = hn::LoadU(d, y + v * lanes);
+    for (int i = 0; i < kBlockRows; ++i) {
+      const auto factor = hn::Set(d, x[i]);
+      for (int v = 0; v < kVectors; ++v) sum[i][v] = hn::MulAdd(factor, from[v], sum[i][v]);
+    }
+    x += x_stride;
+    y += y_stride;
+  }
+  HWY_ALIGN T row[kVectors * HWY_MAX_BYTES / sizeof(T)];
+  for (int i = 0; i < kBlockRows; ++i) {
+    for (int v = 0; v < kVectors; ++v) hn::StoreU(sum[i][v], d, row + v * lanes);
+    for (int j = 0; j < kVectors * lanes; ++j) c[i * c_stride + j] += row[j];
+  }
+}
+
+template <typename T>
+HWY_INLINE void AddProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,
+                           double* c) {
+  const int lanes = static_cast<int>(hn::Lanes(hn::ScalableTag<T>()));
+  const int c_stride = Padded(q);
+  int j = 0;
+  // The columns outermost: a panel of y stays in the first-level cache while x streams by.
+  for (; j + kBlockVectors * lanes <= q + lanes - 1; j += kBlockVectors * lanes) {
+    for (int i = 0; i < p; i += kBlockRows) {
+      ProductBlock<kBlockVectors>(x + i, x_stride, y + j, y_stride, c + i * c_stride + j, c_stride);
+    }
+  }
+  for (; j < q; j += lanes) {
+    for (int i = 0; i < p; i += kBlockRows) {
+      ProductBlock<1>(x + i, x_stride, y + j, y_stride, c + i * c_stride + j, c_stride);
+    }
+  }
+}
+
+// The exported names: one for each precision, as HWY_EXPORT wants plain functions.
+#define PBNBRDF_KERNELS(T, Suffix)                                                              \
+  void Dense##Suffix(const T* layer, int out, int in, const T* x, T* y) {                       \
+    DenseBlocks<true>(layer, in + 1, 1, out, in, x, y);                                         \
+  }                                                                                             \
+  void DenseTransposed##Suffix(const T* layer, int out, int in, const T* y, T* x) {             \
+    DenseBlocks<false>(layer, 1, in + 1, in, out, y, x);                                        \
+  }                                                                                             \
+  void Tanh##Suffix(T* x, std::size_t count) { TanhAll(x, count); }                             \
+  void PairProducts##Suffix(const T* a, int na, const T* b, int nb, int rows, bool symmetric,   \
+                            T* out, int out_stride) {                                           \
+    PairProductsOf(a, na, b, nb, rows, symmetric, out, out_stride);                             \
+  }                                                                                             \
+  void AddTransposedProduct##Suffix(const T* x, int p, int x_stride, const T* y, int q,         \
+                                    int y_stride, double* c) {                                  \
+    AddProduct(x, p, x_stride, y, q, y_stride, c);                                              \
+  }
+
+PBNBRDF_KERNELS(float, F)
+PBNBRDF_KERNELS(double, D)
+#undef PBNBRDF_KERNELS
+
+const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace
+}  // namespace pbnbrdf::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pbnbrdf::kernels {
+
+HWY_EXPORT(TargetName);
+const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
+
+#define PBNBRDF_DISPATCH(T, Suffix)                                                             \
+  HWY_EXPORT(Dense##Suffix);                                                                    \
+  HWY_EXPORT(DenseTransposed##Suffix);                                                          \
+  HWY_EXPORT(Tanh##Suffix);                                                                     \
+  HWY_EXPORT(PairProducts##Suffix);                                                             \
+  HWY_EXPORT(AddTransposedProduct##Suffix);                                                     \
+  template <>                                                                                   \
+  void Dense(const T* layer, int out, int in, const T* x, T* y) {                               \
+    HWY_DYNAMIC_DISPATCH(Dense##Suffix)(layer, out, in, x, y);                                  \
+  }                                                                                             \
+  template <>                                                                                   \
+  void DenseTransposed(const T* layer, int out, int in, const T* y, T* x) {                     \
+    HWY_DYNAMIC_DISPATCH(DenseTransposed##Suffix)(layer, out, in, y, x);                        \
+  }                                                                                             \
+  template <>                                                                                   \
+  void Tanh(T* x, std::size_t count) {                                                          \
+    HWY_DYNAMIC_DISPATCH(Tanh##Suffix)(x, count);                                               \
+  }                                                                                             \
+  template <>                                                                                   \
+  void PairProducts(const T* a, int na, const T* b, int nb, int rows, bool symmetric, T* out,   \
+                    int out_stride) {                                                           \
+    HWY_DYNAMIC_DISPATCH(PairProducts##Suffix)(a, na, b, nb, rows, symmetric, out, out_stride); \
+  }                                                                                             \
+  template <>                                                                                   \
+  void AddTransposedProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,   \
+                            double* c) {                                                        \
+    HWY_DYNAMIC_DISPATCH(AddTransposedProduct##Suffix)(x, p, x_stride, y, q, y_stride, c);      \
+  }
+
+PBNBRDF_DISPATCH(float, F)
+PBNBRDF_DISPATCH(double, D)
+#undef PBNBRDF_DISPATCH
+
+}  // namespace pbnbrdf::kernels
+#endif  // HWY_ONCE

@@ -1,0 +1,100 @@
+#include "pbnbrdf/network/batched_mlp.h"
+
+#include <algorithm>
+
+namespace pbnbrdf {
+namespace {
+
+using kernels::kBatch;
+
+template <typename T>
+void ActivateAll(Activation activation, T* x, std::size_t count) {
+  if (activation == Activation::kTanh) return kernels::Tanh(x, count);
+  for (std::size_t i = 0; i < count; ++i) x[i] = std::max(x[i], T(0));
+}
+
+// delta *= the activation's slope, from its value y.
+template <typename T>
+void MultiplySlopes(Activation activation, const T* y, std::size_t count, T* delta) {
+  if (activation == Activation::kTanh) {
+    for (std::size_t i = 0; i < count; ++i) delta[i] *= T(1) - y[i] * y[i];
+  } else {
+    for (std::size_t i = 0; i < count; ++i) delta[i] = y[i] > T(0) ? delta[i] : T(0);
+  }
+}
+
+// to[n * stride + i] = from[i * kBatch + n], in tiles that stay in the cache.
+template <typename T>
+void Transpose(const T* from, int size, T* to, int stride) {
+  constexpr int kTile = 16;
+  for (int first = 0; first < kBatch; first += kTile) {
+    for (int i = 0; i < size; ++i) {
+      for (int n = first; n < first + kTile; ++n) to[n * stride + i] = from[i * kBatch + n];
+    }
+  }
+}
+
+}  // namespace
+
+template <typename T>
+BatchedMlp<T>::BatchedMlp(const NetworkShape& shape, int rows) : shape_(shape), rows_(rows) {
+  for (int layer = 0; layer < shape.num_layers(); ++layer) {
+    const int in = shape.in(layer), out = shape.out(layer);
+    activations_.emplace_back(out * kBatch);
+    if (rows == 0) continue;
+    deltas_.emplace_back(rows * out * kBatch);
+    deltas_by_sample_.emplace_back(kBatch * rows * kernels::Padded(out) + kernels::kPad);
+    const int stride = kernels::Padded(in + 1);
+    AlignedVector<T>& inputs = inputs_by_sample_.emplace_back(kBatch * stride + kernels::kPad);
+    for (int n = 0; n < kBatch; ++n) inputs[n * stride + in] = T(1);
+  }
+}
+
+template <typename T>
+void BatchedMlp<T>::Forward(const T* weights, const T* input) {
+  input_ = input;
+  for (int layer = 0; layer < shape_.num_layers(); ++layer) {
+    T* output = activations_[layer].data();
+    kernels::Dense(weights + shape_.offset(layer), shape_.out(layer), shape_.in(layer), input,
+                   output);
+    if (layer + 1 < shape_.num_layers()) {
+      ActivateAll(shape_.activation(), output, activations_[layer].size());
+    }
+    input = output;
+  }
+}
+
+template <typename T>
+void BatchedMlp<T>::Backward(const T* weights) {
+  for (int row = 0; row < rows_; ++row) BackwardRow(weights, row);
+  TransposeAll();
+}
+
+template <typename T>
+void BatchedMlp<T>::BackwardRow(const T* weights, int row) {
+  for (int layer = shape_.num_layers() - 1; layer > 0; --layer) {
+    const AlignedVector<T>& y = activations_[layer - 1];
+    T* delta = deltas_[layer - 1].data() + row * y.size();
+    kernels::DenseTransposed(weights + shape_.offset(layer), shape_.out(layer), shape_.in(layer),
+                             deltas_[layer].data() + row * activations_[layer].size(), delta);
+    MultiplySlopes(shape_.activation(), y.data(), y.size(), delta);
+  }
+}
+
+template <typename T>
+void BatchedMlp<T>::TransposeAll() {
+  for (int layer = 0; layer < shape_.num_layers(); ++layer) {
+    const int in = shape_.in(layer), out = shape_.out(layer), padded = kernels::Padded(out);
+    Transpose(layer == 0 ? input_ : activations_[layer - 1].data(), in,
+              inputs_by_sample_[layer].data(), kernels::Padded(in + 1));
+    for (int row = 0; row < rows_; ++row) {
+      Transpose(deltas_[layer].data() + row * out * kBatch, out,
+                deltas_by_sample_[layer].data() + row * padded, rows_ * padded);
+    }
+  }
+}
+
+template class BatchedMlp<float>;
+template class BatchedMlp<double>;
+
+}  // namespace pbnbrdf

@@ -1,0 +1,30 @@
+#include "pbnbrdf/network/network_shape.h"
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+
+NetworkShape::NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation)
+    : encoding_(encoding), activation_(activation), sizes_{kEncodedSize}, offsets_{0} {
+  if (hidden.empty() || hidden.size() >= kMostLayers) {
+    Fail("hidden: ", hidden.size(), " layers; must be 1 to ", kMostLayers - 1);
+  }
+  for (int size : hidden) {
+    if (size < 1 || size > kLargestLayer) {
+      Fail("hidden: a layer of ", size, " units; must be 1 to ", kLargestLayer);
+    }
+    sizes_.push_back(size);
+  }
+  sizes_.push_back(kChannels);
+  for (int layer = 0; layer < num_layers(); ++layer) {
+    offsets_.push_back(offsets_.back() + block_size(layer));
+  }
+}
+
+std::string NetworkShape::Description() const {
+  std::string text;
+  for (int size : sizes_) text += StrCat(text.empty() ? "" : "-", size);
+  return StrCat(text, " ", NameOf(kActivations, activation_));
+}
+
+}  // namespace pbnbrdf

@@ -1,0 +1,143 @@
+#include "pbnbrdf/network/neural_brdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/network/batched_mlp.h"
+#include "pbnbrdf/network/safetensors.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr std::string_view kOutputUnit = "expm1";
+
+std::string WeightName(int layer) { return StrCat("fc", layer + 1, ".weight"); }
+std::string BiasName(int layer) { return StrCat("fc", layer + 1, ".bias"); }
+
+const std::string& Require(const std::string& path, const NeuralBrdf::Metadata& metadata,
+                           const std::string& key) {
+  const auto found = metadata.find(key);
+  if (found == metadata.end()) Fail(path, ": not a fitted network: __metadata__ lacks ", key);
+  return found->second;
+}
+
+const Tensor& Require(const std::string& path, const SafetensorsFile& file,
+                      const std::string& name, const std::vector<std::int64_t>& shape) {
+  const auto found = file.tensors.find(name);
+  if (found == file.tensors.end()) Fail(path, ": tensor ", name, " is missing");
+  if (found->second.shape != shape) {
+    std::string wanted;
+    for (auto extent : shape) wanted += StrCat(wanted.empty() ? "" : " x ", extent);
+    Fail(path, ": tensor ", name, " has another shape than ", wanted);
+  }
+  return found->second;
+}
+
+// The hidden layers' sizes, from the biases fc1 ... fc(L-1); the last layer's is checked later.
+std::vector<int> HiddenSizes(const std::string& path, const SafetensorsFile& file) {
+  std::vector<int> sizes;
+  for (int layer = 0; file.tensors.count(BiasName(layer)) != 0; ++layer) {
+    const Tensor& bias = file.tensors.at(BiasName(layer));
+    if (bias.shape.size() != 1) Fail(path, ": tensor ", BiasName(layer), " must have one dimension");
+    sizes.push_back(static_cast<int>(bias.values.size()));
+  }
+  if (sizes.size() < 2) Fail(path, ": not a fitted network: tensors fc1.bias, fc2.bias are missing");
+  sizes.pop_back();
+  return sizes;
+}
+
+NetworkShape ReadShape(const std::string& path, const SafetensorsFile& file) {
+  const std::string& output = Require(path, file.metadata, "output");
+  if (output != kOutputUnit) Fail(path, ": output=", output, " is not ", kOutputUnit);
+  const std::string& encoding = Require(path, file.metadata, "encoding");
+  const std::string& activation = Require(path, file.metadata, "activation");
+  try {
+    return NetworkShape(ParseName(kEncodings, "encoding", encoding), HiddenSizes(path, file),
+                        ParseName(kActivations, "activation", activation));
+  } catch (const Error& error) {
+    Fail(path, ": ", error.what());
+  }
+}
+
+}  // namespace
+
+NeuralBrdf::NeuralBrdf(const NetworkShape& shape, std::vector<double> weights, Metadata metadata)
+    : shape_(shape), weights_(std::move(weights)), metadata_(std::move(metadata)) {
+  if (weights_.size() != static_cast<std::size_t>(shape.num_weights())) {
+    Fail("weights: ", weights_.size(), " numbers, a ", shape.Description(), " network has ",
+         shape.num_weights());
+  }
+  for (double weight : weights_) {
+    if (!std::isfinite(weight)) Fail("weights: one is not finite");
+  }
+  metadata_["format"] = "pbnbrdf";
+  metadata_["encoding"] = NameOf(kEncodings, shape.encoding());
+  metadata_["activation"] = NameOf(kActivations, shape.activation());
+  metadata_["output"] = kOutputUnit;
+  metadata_["units"] = "linear RGB, 1/sr, without the cosine";
+}
+
+NeuralBrdf NeuralBrdf::Read(const std::string& path) {
+  const SafetensorsFile file = ReadSafetensors(path);
+  const NetworkShape shape = ReadShape(path, file);
+  if (file.tensors.size() != 2 * static_cast<std::size_t>(shape.num_layers())) {
+    Fail(path, ": ", file.tensors.size(), " tensors, expected ", 2 * shape.num_layers());
+  }
+  std::vector<double> weights;
+  for (int layer = 0; layer < shape.num_layers(); ++layer) {
+    const int in = shape.in(layer), out = shape.out(layer);
+    const Tensor& w = Require(path, file, WeightName(layer), {out, in});
+    const Tensor& b = Require(path, file, BiasName(layer), {out});
+    for (int o = 0; o < out; ++o) {
+      weights.insert(weights.end(), w.values.begin() + o * in, w.values.begin() + (o + 1) * in);
+      weights.push_back(b.values[o]);
+    }
+  }
+  return NeuralBrdf(shape, std::move(weights), file.metadata);
+}
+
+void NeuralBrdf::Write(const std::string& path) const {
+  SafetensorsFile file;
+  file.metadata = metadata_;
+  for (int layer = 0; layer < shape_.num_layers(); ++layer) {
+    const int in = shape_.in(layer), out = shape_.out(layer);
+    Tensor w = {{out, in}, {}}, b = {{out}, {}};
+    const double* row = weights_.data() + shape_.offset(layer);
+    for (int o = 0; o < out; ++o, row += in + 1) {
+      w.values.insert(w.values.end(), row, row + in);
+      b.values.push_back(row[in]);
+    }
+    file.tensors[WeightName(layer)] = std::move(w);
+    file.tensors[BiasName(layer)] = std::move(b);
+  }
+  WriteSafetensors(path, file);
+}
+
+void NeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                                   std::span<Rgb> values) const {
+  constexpr int kBatch = kernels::kBatch;
+  BatchedMlp<double> mlp(shape_, 0);
+  AlignedVector<double> input(kEncodedSize * kBatch);
+  for (std::size_t first = 0; first < pairs.size(); first += kBatch) {
+    const int count = static_cast<int>(std::min<std::size_t>(kBatch, pairs.size() - first));
+    for (int n = 0; n < count; ++n) {
+      const auto encoded = Encode(shape_.encoding(), pairs[first + n]);
+      for (int i = 0; i < kEncodedSize; ++i) input[i * kBatch + n] = encoded[i];
+    }
+    mlp.Forward(weights_.data(), input.data());
+    for (int n = 0; n < count; ++n) {
+      for (int c = 0; c < NetworkShape::kChannels; ++c) {
+        const double f = std::expm1(mlp.output()[c * kBatch + n]);
+        values[first + n][c] = f > 0.0 ? std::min(f, kLargestValue) : 0.0;  // 0 for NaN too
+      }
+    }
+  }
+}
+
+std::string NeuralBrdf::Description() const {
+  return StrCat("neural BRDF ", shape_.Description(), ", ", NameOf(kEncodings, shape_.encoding()),
+                " encoding, ", shape_.num_weights(), " weights");
+}
+
+}  // namespace pbnbrdf

@@ -1,0 +1,15 @@
+#include "pbnbrdf/network/open_brdf.h"
+
+#include "pbnbrdf/brdf/open_brdf.h"
+#include "pbnbrdf/network/neural_brdf.h"
+
+namespace pbnbrdf {
+
+std::unique_ptr<Brdf> OpenBrdf(const std::string& source) {
+  if (source.ends_with(".safetensors")) {
+    return std::make_unique<NeuralBrdf>(NeuralBrdf::Read(source));
+  }
+  return OpenMeasuredBrdf(source);
+}
+
+}  // namespace pbnbrdf

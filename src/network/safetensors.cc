@@ -1,0 +1,136 @@
+#include "pbnbrdf/network/safetensors.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/files.h"
+
+namespace pbnbrdf {
+namespace {
+
+using nlohmann::json;
+
+static_assert(std::endian::native == std::endian::little, "safetensors files are little-endian");
+
+constexpr std::uintmax_t kLargestFile = 64 << 20;
+constexpr std::size_t kLengthBytes = 8;
+constexpr std::size_t kAlignment = 8;
+
+struct Range {
+  std::size_t begin, end;
+};
+
+template <typename T>
+void AppendValues(const std::string& bytes, Range range, std::vector<double>* values) {
+  for (std::size_t at = range.begin; at < range.end; at += sizeof(T)) {
+    T value;
+    std::memcpy(&value, bytes.data() + at, sizeof(T));
+    values->push_back(value);
+  }
+}
+
+std::size_t ElementCount(const std::string& place, const std::vector<std::int64_t>& shape,
+                         std::size_t limit) {
+  std::size_t count = 1;
+  for (std::int64_t extent : shape) {
+    if (extent < 1 || static_cast<std::uint64_t>(extent) > limit / count) {
+      Fail(place, ": shape ", json(shape).dump(), " doesn't fit the file");
+    }
+    count *= extent;
+  }
+  return count;
+}
+
+// `data`: where the tensors' bytes begin in `bytes`.
+Tensor ParseTensor(const std::string& place, const json& entry, const std::string& bytes,
+                   std::size_t data) {
+  Tensor tensor;
+  std::string dtype;
+  std::vector<std::uint64_t> offsets;
+  try {
+    entry.at("dtype").get_to(dtype);
+    entry.at("shape").get_to(tensor.shape);
+    entry.at("data_offsets").get_to(offsets);
+  } catch (const json::exception&) {
+    Fail(place, ": expected dtype, shape and data_offsets");
+  }
+  if (dtype != "F64" && dtype != "F32") Fail(place, ": dtype ", dtype, " is not one of F64 | F32");
+  const std::size_t size = dtype == "F64" ? sizeof(double) : sizeof(float);
+  const std::size_t available = bytes.size() - data;
+  const std::size_t count = ElementCount(place, tensor.shape, available);
+  if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > available ||
+      offsets[1] - offsets[0] != count * size) {
+    Fail(place, ": data_offsets ", json(offsets).dump(), " don't fit shape ",
+         json(tensor.shape).dump(), " of ", dtype, " in ", available, " bytes of data");
+  }
+  const Range range = {data + offsets[0], data + offsets[1]};
+  tensor.values.reserve(count);
+  if (dtype == "F64") {
+    AppendValues<double>(bytes, range, &tensor.values);
+  } else {
+    AppendValues<float>(bytes, range, &tensor.values);
+  }
+  for (double value : tensor.values) {
+    if (!std::isfinite(value)) Fail(place, ": holds a value that is not finite");
+  }
+  return tensor;
+}
+
+std::map<std::string, std::string> ParseMetadata(const std::string& path, const json& entry) {
+  try {
+    return entry.get<std::map<std::string, std::string>>();
+  } catch (const json::exception&) {
+    Fail(path, ": __metadata__ must map names to texts");
+  }
+}
+
+}  // namespace
+
+SafetensorsFile ReadSafetensors(const std::string& path) {
+  const std::string bytes = ReadFile(path, kLargestFile);
+  std::uint64_t header_size = 0;
+  if (bytes.size() >= kLengthBytes) std::memcpy(&header_size, bytes.data(), kLengthBytes);
+  if (header_size < 2 || header_size > bytes.size() - kLengthBytes) {
+    Fail(path, ": not a safetensors file: its first 8 bytes say that the header has ", header_size,
+         " bytes, the file has ", bytes.size());
+  }
+  const char* header_begin = bytes.data() + kLengthBytes;
+  const json header = json::parse(header_begin, header_begin + header_size, nullptr,
+                                  /*allow_exceptions=*/false);
+  if (!header.is_object()) Fail(path, ": not a safetensors file: its header is not a JSON object");
+  SafetensorsFile file;
+  for (const auto& [name, entry] : header.items()) {
+    if (name == "__metadata__") {
+      file.metadata = ParseMetadata(path, entry);
+    } else {
+      file.tensors[name] = ParseTensor(StrCat(path, ": tensor ", name), entry, bytes,
+                                       kLengthBytes + header_size);
+    }
+  }
+  return file;
+}
+
+void WriteSafetensors(const std::string& path, const SafetensorsFile& file) {
+  json header = json::object();
+  if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
+  std::string data;
+  for (const auto& [name, tensor] : file.tensors) {
+    const std::size_t size = tensor.values.size() * sizeof(double);
+    header[name] = {{"dtype", "F64"},
+                    {"shape", tensor.shape},
+                    {"data_offsets", {data.size(), data.size() + size}}};
+    data.append(reinterpret_cast<const char*>(tensor.values.data()), size);
+  }
+  std::string text = header.dump();
+  text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
+  const std::uint64_t header_size = text.size();
+  std::string bytes(kLengthBytes, '\0');
+  std::memcpy(bytes.data(), &header_size, kLengthBytes);
+  WriteFile(path, bytes + text + data);
+}
+
+}  // namespace pbnbrdf

@@ -1,0 +1,78 @@
+#include "pbnbrdf/problem/fit_problem.h"
+
+#include <ceres/loss_function.h>
+
+#include <cmath>
+#include <random>
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr std::size_t kMostSamples = 100'000'000;
+
+void CheckWeight(const char* field, double weight) {
+  if (!(weight >= 0.0) || !std::isfinite(weight)) {
+    Fail(field, " = ", weight, "; must be finite and >= 0");
+  }
+}
+
+void CheckCount(const char* field, std::size_t value, std::size_t least, std::size_t most) {
+  if (value < least || value > most) {
+    Fail(field, " = ", value, "; must be ", least, " to ", most);
+  }
+}
+
+}  // namespace
+
+void FitProblem::Validate() const {
+  Shape();
+  CheckWeight("log_weight", log_weight);
+  CheckWeight("chromaticity_weight", chromaticity_weight);
+  CheckWeight("energy_weight", energy_weight);
+  if (log_weight + chromaticity_weight == 0.0) {
+    Fail("terms: log or chromaticity must be among them, with a weight > 0");
+  }
+  if (!(loss_scale > 0.0) || !std::isfinite(loss_scale)) {
+    Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
+  }
+  CheckCount("samples", samples, 1, kMostSamples);
+  CheckCount("energy_strata", static_cast<std::size_t>(energy_strata), 1, 1024);
+  CheckCount("energy_theta", static_cast<std::size_t>(energy_theta), 2, 1024);
+  CheckCount("energy_phi", static_cast<std::size_t>(energy_phi), 2, 1024);
+}
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
+  switch (loss) {
+    case Loss::kL2: return nullptr;
+    case Loss::kSoftL1: return std::make_unique<ceres::SoftLOneLoss>(scale);
+    case Loss::kHuber: return std::make_unique<ceres::HuberLoss>(scale);
+    case Loss::kCauchy: return std::make_unique<ceres::CauchyLoss>(scale);
+  }
+  return nullptr;
+}
+
+std::vector<double> InitialWeights(const NetworkShape& shape,
+                                   const std::vector<BrdfSample>& samples, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<double> weights(shape.num_weights(), 0.0);
+  for (int layer = 0; layer < shape.num_layers(); ++layer) {
+    const int in = shape.in(layer), out = shape.out(layer);
+    const double bound = std::sqrt(6.0 / (in + out));
+    double* row = weights.data() + shape.offset(layer);
+    for (int o = 0; o < out; ++o, row += in + 1) {
+      for (int i = 0; i < in; ++i) {
+        const double u = static_cast<double>(random() >> 11) * 0x1p-53;
+        row[i] = bound * (2.0 * u - 1.0);
+      }
+      if (layer + 1 < shape.num_layers()) continue;
+      for (const BrdfSample& sample : samples) {
+        row[in] += std::log1p(sample.value[o]) / static_cast<double>(samples.size());
+      }
+    }
+  }
+  return weights;
+}
+
+}  // namespace pbnbrdf

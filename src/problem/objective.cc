@@ -1,0 +1,251 @@
+#include "pbnbrdf/problem/objective.h"
+
+#include <ceres/jet.h>
+#include <ceres/loss_function.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "pbnbrdf/network/batched_mlp.h"
+#include "pbnbrdf/network/encoded_batches.h"
+#include "pbnbrdf/problem/energy_strata.h"
+#include "pbnbrdf/problem/normal_equations.h"
+#include "pbnbrdf/residuals/chromaticity_residual.h"
+#include "pbnbrdf/residuals/log_residual.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr int kChannels = NetworkShape::kChannels;
+constexpr int kBatch = kernels::kBatch;
+
+// Batches are dealt to a fixed number of partial sums, which are added in order: the result then
+// doesn't depend on the threads that compute them.
+constexpr std::size_t kMostPartitions = 8;
+constexpr std::size_t kBatchesPerPartition = 4;
+
+std::size_t PartitionCount(std::size_t batches) {
+  return std::clamp<std::size_t>(batches / kBatchesPerPartition, 1, kMostPartitions);
+}
+
+// sum of rho(s) of one sample's residuals of a term, and the scale sqrt(weight rho'(s)) of its rows.
+struct RobustWeight {
+  double cost, row_scale;
+};
+
+RobustWeight Robustify(const ceres::LossFunction* loss, double weight, double squared_norm) {
+  double rho[3] = {squared_norm, 1.0, 0.0};
+  if (loss != nullptr) loss->Evaluate(squared_norm, rho);
+  return {0.5 * weight * rho[0], std::sqrt(weight * rho[1])};
+}
+
+// A term at the training samples: residuals of Term, which takes the outputs of one sample.
+template <typename Term>
+class PointTerm {
+ public:
+  static constexpr int kRows = Term::kNumResiduals;
+
+  // weight: of the mean over the samples; 0 makes it an absent term, without rows.
+  PointTerm(double weight, const FitProblem& problem, const std::vector<BrdfSample>& samples)
+      : weight_(weight / static_cast<double>(samples.size())),
+        loss_(MakeLoss(problem.loss, problem.loss_scale)) {
+    residuals_.reserve(samples.size());
+    for (const BrdfSample& s : samples) residuals_.emplace_back(s.value, CosI(s.pair));
+  }
+
+  int rows() const { return weight_ > 0.0 ? kRows : 0; }
+  const Term& residual(std::size_t sample) const { return residuals_[sample]; }
+
+  double Cost(std::size_t sample, const double* z) const {
+    if (weight_ == 0.0) return 0.0;
+    double r[kRows];
+    residuals_[sample](z, r);
+    double squared_norm = 0.0;
+    for (double value : r) squared_norm += value * value;
+    return Robustify(loss_.get(), weight_, squared_norm).cost;
+  }
+
+  // Calls set(row, residual, gradient with respect to z) for each row. Returns the cost.
+  template <typename SetRow>
+  double Linearize(std::size_t sample, const double* z, SetRow set) const {
+    if (weight_ == 0.0) return 0.0;
+    using Jet = ceres::Jet<double, kChannels>;
+    Jet outputs[kChannels], r[kRows];
+    for (int c = 0; c < kChannels; ++c) outputs[c] = Jet(z[c], c);
+    residuals_[sample](outputs, r);
+    double squared_norm = 0.0;
+    for (const Jet& value : r) squared_norm += value.a * value.a;
+    const RobustWeight robust = Robustify(loss_.get(), weight_, squared_norm);
+    for (int row = 0; row < kRows; ++row) {
+      const Eigen::Vector3d gradient = robust.row_scale * r[row].v;
+      set(row, robust.row_scale * r[row].a, gradient.data());
+    }
+    return robust.cost;
+  }
+
+ private:
+  double weight_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  std::vector<Term> residuals_;  // one a sample
+};
+
+// |log1p(f cos_i) - log1p(max(0, f^) cos_i)|, summed over the channels.
+double AbsLogError(const LogResidual& residual, const double* z) {
+  const double clamped[kChannels] = {std::max(z[0], 0.0), std::max(z[1], 0.0), std::max(z[2], 0.0)};
+  double r[kChannels];
+  residual(clamped, r);
+  return std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
+}
+
+template <typename T>
+class BatchedObjective final : public Objective {
+ public:
+  BatchedObjective(const FitProblem& problem, const std::vector<BrdfSample>& samples)
+      : shape_(problem.Shape()),
+        log_(problem.log_weight, problem, samples),
+        chromaticity_(problem.chromaticity_weight, problem, samples),
+        energy_(problem) {
+    inputs_.Reserve(samples.size());
+    for (const BrdfSample& s : samples) inputs_.Add(Encode(shape_.encoding(), s.pair));
+  }
+
+  const NetworkShape& shape() const override { return shape_; }
+
+  double Cost(const double* weights) override {
+    const AlignedVector<T> w = Converted(weights);
+    return Sum(w, [&](std::size_t sample, const double* z) {
+             return log_.Cost(sample, z) + chromaticity_.Cost(sample, z);
+           }) + energy_.Cost(w.data());
+  }
+
+  double MeanAbsLogError(const double* weights) override {
+    const double sum = Sum(Converted(weights), [&](std::size_t sample, const double* z) {
+      return AbsLogError(log_.residual(sample), z);
+    });
+    return sum / static_cast<double>(kChannels * inputs_.size());
+  }
+
+  bool Linearize(const double* weights, Linearization* at) override {
+    const AlignedVector<T> w = Converted(weights);
+    const std::size_t partitions = PartitionCount(inputs_.num_batches());
+    while (workers_.size() < partitions) {
+      workers_.push_back(std::make_unique<Worker>(shape_, log_.rows() + chromaticity_.rows()));
+    }
+    tbb::parallel_for(std::size_t{0}, partitions, [&](std::size_t p) {
+      Worker& worker = *workers_[p];
+      worker.cost = 0.0;
+      worker.sums.Clear();
+      for (std::size_t b = p; b < inputs_.num_batches(); b += partitions) {
+        LinearizeBatch(w.data(), b, &worker);
+      }
+    });
+    at->cost = 0.0;
+    at->gradient.assign(shape_.num_weights(), 0.0);
+    at->hessian.assign(at->gradient.size() * at->gradient.size(), 0.0);
+    for (std::size_t p = 0; p < partitions; ++p) {
+      at->cost += workers_[p]->cost;
+      if (p > 0) workers_[0]->sums.Add(workers_[p]->sums);
+    }
+    workers_[0]->sums.AddTo(at->gradient.data(), at->hessian.data());
+    energy_.Linearize(w.data(), at);
+    return IsFinite(*at);
+  }
+
+ private:
+  struct Worker {
+    Worker(const NetworkShape& shape, int rows)
+        : mlp(shape, rows), residuals(rows * kBatch), sums(shape) {}
+    BatchedMlp<T> mlp;
+    AlignedVector<T> residuals;  // row after row
+    NormalEquations<T> sums;
+    double cost = 0.0;
+  };
+
+  AlignedVector<T> Converted(const double* weights) const {
+    return AlignedVector<T>(weights, weights + shape_.num_weights());
+  }
+
+  static void LoadOutput(const T* output, int n, double* z) {
+    for (int c = 0; c < kChannels; ++c) z[c] = static_cast<double>(output[c * kBatch + n]);
+  }
+
+  // The sum over samples of value(sample, z).
+  template <typename Value>
+  double Sum(const AlignedVector<T>& w, Value value) const {
+    const std::size_t partitions = PartitionCount(inputs_.num_batches());
+    std::vector<double> sums(partitions, 0.0);
+    tbb::parallel_for(std::size_t{0}, partitions, [&](std::size_t p) {
+      BatchedMlp<T> mlp(shape_, 0);
+      for (std::size_t b = p; b < inputs_.num_batches(); b += partitions) {
+        mlp.Forward(w.data(), inputs_.batch(b));
+        for (int n = 0; n < inputs_.batch_size(b); ++n) {
+          double z[kChannels];
+          LoadOutput(mlp.output(), n, z);
+          sums[p] += value(b * kBatch + n, z);
+        }
+      }
+    });
+    double total = 0.0;
+    for (double sum : sums) total += sum;
+    return total;
+  }
+
+  void LinearizeBatch(const T* w, std::size_t b, Worker* worker) const {
+    BatchedMlp<T>& mlp = worker->mlp;
+    mlp.Forward(w, inputs_.batch(b));
+    const int size = inputs_.batch_size(b);
+    if (size < kBatch) ClearRows(worker);
+    for (int n = 0; n < size; ++n) {
+      double z[kChannels];
+      LoadOutput(mlp.output(), n, z);
+      const auto set_from = [&](int first_row) {
+        return [&, first_row](int row, double residual, const double* gradient) {
+          worker->residuals[(first_row + row) * kBatch + n] = static_cast<T>(residual);
+          T* to = mlp.output_gradient(first_row + row) + n;
+          for (int c = 0; c < kChannels; ++c) to[c * kBatch] = static_cast<T>(gradient[c]);
+        };
+      };
+      const std::size_t sample = b * kBatch + n;
+      worker->cost += log_.Linearize(sample, z, set_from(0));
+      worker->cost += chromaticity_.Linearize(sample, z, set_from(log_.rows()));
+    }
+    mlp.Backward(w);
+    worker->sums.AddBatch(mlp, worker->residuals.data());
+  }
+
+  // So that the places behind the last sample of a batch add nothing.
+  static void ClearRows(Worker* worker) {
+    std::fill(worker->residuals.begin(), worker->residuals.end(), T(0));
+    for (int row = 0; row < worker->mlp.rows(); ++row) {
+      T* gradient = worker->mlp.output_gradient(row);
+      std::fill(gradient, gradient + kChannels * kBatch, T(0));
+    }
+  }
+
+  static bool IsFinite(const Linearization& at) {
+    // A sum is finite only if all of its terms are.
+    double sum = at.cost;
+    for (double value : at.gradient) sum += 0.0 * value;
+    for (double value : at.hessian) sum += 0.0 * value;
+    return std::isfinite(sum);
+  }
+
+  NetworkShape shape_;
+  EncodedBatches<T> inputs_;
+  PointTerm<LogResidual> log_;
+  PointTerm<ChromaticityResidual> chromaticity_;
+  EnergyStrata<T> energy_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+};
+
+}  // namespace
+
+std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
+                                         const std::vector<BrdfSample>& samples) {
+  if (problem.precision == Precision::kDouble) {
+    return std::make_unique<BatchedObjective<double>>(problem, samples);
+  }
+  return std::make_unique<BatchedObjective<float>>(problem, samples);
+}
+
+}  // namespace pbnbrdf
