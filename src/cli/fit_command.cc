@@ -53,9 +53,9 @@ NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summa
 nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitProblem& problem,
                                    const FitSummary& summary, const std::string& flags) {
   measures["material"] = FLAGS_material;
-  measures["initial_cost"] = summary.initial_cost;
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
+  measures["energy_stage"] = summary.energy_stage;
   measures["seconds"] = summary.seconds;
   measures["seed"] = problem.seed;
   measures["termination"] = NameOf(kTerminations, summary.termination);

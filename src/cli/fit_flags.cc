@@ -9,7 +9,7 @@
 DEFINE_string(encoding, "multiscale", "the network's input: cartesian | reciprocal | multiscale");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
-DEFINE_string(terms, "log,chromaticity,energy",
+DEFINE_string(terms, "log,energy",
               "terms of the cost: log (eq. 6), chromaticity (eq. 7), energy (eq. 5)");
 DEFINE_double(log_weight, 1.0, "weight of the log term");
 DEFINE_double(chromaticity_weight, 0.1, "weight of the chromaticity term");
@@ -19,14 +19,14 @@ DEFINE_int32(energy_theta, 64, "its quadrature's elevations of the half vector")
 DEFINE_int32(energy_phi, 32, "its quadrature's azimuths of the half vector");
 DEFINE_string(loss, "soft_l1", "robust loss of the log and chromaticity terms: "
               "l2 | soft_l1 | huber | cauchy");
-DEFINE_double(loss_scale, 0.003, "residual at which the loss turns from square to linear");
+DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square to linear");
 DEFINE_string(sampling, "highlight",
               "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
 DEFINE_uint64(samples, 20000, "training samples");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference");
-DEFINE_int32(max_iterations, 150, "stop after so many iterations");
+DEFINE_int32(max_iterations, 80, "stop a stage after so many iterations");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
 

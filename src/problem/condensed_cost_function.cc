@@ -28,7 +28,8 @@ bool CondensedCostFunction::Evaluate(double const* const* parameters, double* re
   Linearization at;
   if (!objective_->Linearize(weights.data(), &at)) return false;
   const JitteredCholesky factor =
-      FactorWithJitter(Eigen::Map<const Eigen::MatrixXd>(at.hessian.data(), p, p));
+      FactorWithJitter(Eigen::Map<const Eigen::MatrixXd>(at.hessian.data(), p, p),
+                       objective_->HessianRounding());
   Eigen::Map<Eigen::VectorXd> projected(residuals, p);
   projected = factor.lower.triangularView<Eigen::Lower>().solve(
       Eigen::Map<const Eigen::VectorXd>(at.gradient.data(), p));

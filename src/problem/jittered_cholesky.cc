@@ -19,12 +19,12 @@ Eigen::VectorXd Scale(const Eigen::MatrixXd& a) {
 
 }  // namespace
 
-JitteredCholesky FactorWithJitter(const Eigen::MatrixXd& a) {
+JitteredCholesky FactorWithJitter(const Eigen::MatrixXd& a, double first_jitter) {
   const Eigen::VectorXd scale = Scale(a);
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   const Eigen::MatrixXd scaled = inverse.asDiagonal() * a * inverse.asDiagonal();
   JitteredCholesky result;
-  for (double jitter = 0.0;; jitter = std::max(1e-15, 10.0 * jitter)) {
+  for (double jitter = first_jitter;; jitter *= 10.0) {
     result.lower = scaled;
     result.lower.diagonal().array() += jitter;
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(result.lower);

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 
 #include "pbnbrdf/network/batched_mlp.h"
 #include "pbnbrdf/network/encoded_batches.h"
@@ -110,6 +111,8 @@ class BatchedObjective final : public Objective {
   }
 
   const NetworkShape& shape() const override { return shape_; }
+
+  double HessianRounding() const override { return 10.0 * std::numeric_limits<T>::epsilon(); }
 
   double Cost(const double* weights) override {
     const AlignedVector<T> w = Converted(weights);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/problem/energy_strata.h"
 
 namespace pbnbrdf {
 namespace {
@@ -39,17 +40,22 @@ class ProgressCallback final : public ceres::IterationCallback {
   ProgressCallback(const Brdf& material, const FitProblem& problem, const FitOptions& options,
                    const double* weights, Stopwatch* stopwatch)
       : on_iteration_(options.on_iteration), weights_(weights), stopwatch_(stopwatch) {
+    if (!on_iteration_) return;
     heldout_ = stopwatch->Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
                                                 kHeldOutSamples, kHeldOutSeed));
     });
   }
 
+  // Iterations of earlier stages are counted on.
+  void set_first_iteration(int iteration) { first_iteration_ = iteration; }
+
   bool interrupted() const { return interrupted_; }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (!on_iteration_) return ceres::SOLVER_CONTINUE;
     FitProgress progress;
-    progress.iteration = summary.iteration;
+    progress.iteration = first_iteration_ + summary.iteration;
     progress.cost = summary.cost;
     progress.seconds = stopwatch_->Seconds();
     interrupted_ = stopwatch_->Exclude([&] {
@@ -64,6 +70,7 @@ class ProgressCallback final : public ceres::IterationCallback {
   const double* weights_;
   Stopwatch* stopwatch_;
   std::unique_ptr<Objective> heldout_;
+  int first_iteration_ = 0;
   bool interrupted_ = false;
 };
 
@@ -76,56 +83,92 @@ ceres::Solver::Options CeresOptions(const FitOptions& options, double seconds_le
   ceres_options.function_tolerance = options.function_tolerance;
   ceres_options.parameter_tolerance = 0.0;
   ceres_options.gradient_tolerance = 0.0;  // costs are tiny: the relative change decides
+  ceres_options.use_nonmonotonic_steps = true;  // halves the iterations; the best weights are kept
   ceres_options.max_num_consecutive_invalid_steps = kMostInvalidSteps;
   ceres_options.update_state_every_iteration = true;
   ceres_options.num_threads = 1;  // one block; its threads are ours
   return ceres_options;
 }
 
-Termination ReadTermination(const ceres::Solver::Summary& summary, const FitOptions& options,
-                            bool interrupted) {
-  if (interrupted) return Termination::kInterrupted;
-  if (summary.termination_type == ceres::CONVERGENCE) return Termination::kConverged;
-  const int iterations = static_cast<int>(summary.iterations.size()) - 1;
-  return iterations >= options.max_iterations ? Termination::kMaxIterations
-                                              : Termination::kMaxSeconds;
-}
+class Solver {
+ public:
+  Solver(const Brdf& material, const FitProblem& problem, const FitOptions& options)
+      : options_(options),
+        samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling, problem.samples,
+                             problem.seed)),
+        weights_(InitialWeights(problem.Shape(), samples_, problem.seed)),
+        callback_(material, problem, options, weights_.data(), &stopwatch_) {}
 
+  // Minimises from where the last stage ended.
+  void RunStage(const FitProblem& problem) {
+    ceres::Problem ceres_problem;
+    std::unique_ptr<Objective> objective;
+    if (options_.jacobian == JacobianMethod::kCondensed) {
+      objective = MakeObjective(problem, samples_);
+      AddCondensed(objective.get(), weights_.data(), &ceres_problem);
+    } else {
+      AddAutodiff(problem, samples_, weights_.data(), &ceres_problem);
+    }
+    callback_.set_first_iteration(summary_.iterations);
+    ceres::Solver::Options ceres_options =
+        CeresOptions(options_, options_.max_seconds - stopwatch_.Seconds());
+    ceres_options.callbacks.push_back(&callback_);
+    ceres::Solver::Summary ceres_summary;
+    ceres::Solve(ceres_options, &ceres_problem, &ceres_summary);
+    if (!ceres_summary.IsSolutionUsable()) Fail("the solver failed: ", ceres_summary.message);
+    Record(ceres_summary);
+  }
+
+  // Whether a further stage is allowed.
+  bool MayContinue() const {
+    return summary_.termination != Termination::kInterrupted &&
+           stopwatch_.Seconds() < options_.max_seconds;
+  }
+
+  const std::vector<double>& weights() const { return weights_; }
+
+  FitSummary Finish() {
+    summary_.seconds = stopwatch_.Seconds();
+    return summary_;
+  }
+
+ private:
+  void Record(const ceres::Solver::Summary& stage) {
+    const int iterations = static_cast<int>(stage.iterations.size()) - 1;
+    summary_.iterations += iterations;
+    summary_.final_cost = stage.final_cost;
+    summary_.message = stage.message;
+    if (callback_.interrupted()) {
+      summary_.termination = Termination::kInterrupted;
+    } else if (stage.termination_type == ceres::CONVERGENCE) {
+      summary_.termination = Termination::kConverged;
+    } else {
+      summary_.termination = iterations >= options_.max_iterations ? Termination::kMaxIterations
+                                                                   : Termination::kMaxSeconds;
+    }
+  }
+
+  Stopwatch stopwatch_;
+  const FitOptions& options_;
+  std::vector<BrdfSample> samples_;
+  std::vector<double> weights_;
+  ProgressCallback callback_;
+  FitSummary summary_;
+};
+
+// The energy term waits until the rest is fitted: from random weights its square outweighs all else
+// by orders of magnitude and leads astray, and most materials never need it.
 Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
-  Stopwatch stopwatch;
-  const std::vector<BrdfSample> samples = DrawSamples(
-      material, SampleSet::kTraining, problem.sampling, problem.samples, problem.seed);
-  const NetworkShape shape = problem.Shape();
-  std::vector<double> weights = InitialWeights(shape, samples, problem.seed);
-  ceres::Problem ceres_problem;
-  std::unique_ptr<Objective> objective;
-  if (options.jacobian == JacobianMethod::kCondensed) {
-    objective = MakeObjective(problem, samples);
-    AddCondensed(objective.get(), weights.data(), &ceres_problem);
-  } else {
-    AddAutodiff(problem, samples, weights.data(), &ceres_problem);
-  }
-
-  ceres::Solver::Options ceres_options =
-      CeresOptions(options, options.max_seconds - stopwatch.Seconds());
-  std::unique_ptr<ProgressCallback> callback;
-  if (options.on_iteration) {
-    callback = std::make_unique<ProgressCallback>(material, problem, options, weights.data(),
-                                                  &stopwatch);
-    ceres_options.callbacks.push_back(callback.get());
-  }
-  ceres::Solver::Summary ceres_summary;
-  ceres::Solve(ceres_options, &ceres_problem, &ceres_summary);
-  if (!ceres_summary.IsSolutionUsable()) Fail("the solver failed: ", ceres_summary.message);
-
-  FitSummary summary;
-  summary.initial_cost = ceres_summary.initial_cost;
-  summary.final_cost = ceres_summary.final_cost;
-  summary.iterations = static_cast<int>(ceres_summary.iterations.size()) - 1;
-  summary.seconds = stopwatch.Seconds();
-  summary.termination = ReadTermination(ceres_summary, options, callback && callback->interrupted());
-  summary.message = ceres_summary.message;
-  return {NeuralBrdf(shape, std::move(weights)), summary};
+  Solver solver(material, problem, options);
+  FitProblem without_energy = problem;
+  without_energy.energy_weight = 0.0;
+  solver.RunStage(without_energy);
+  const bool gains_energy = problem.energy_weight > 0.0 &&
+                            EnergyStrata<double>(problem).Cost(solver.weights().data()) > 0.0;
+  if (gains_energy && solver.MayContinue()) solver.RunStage(problem);
+  FitSummary summary = solver.Finish();
+  summary.energy_stage = gains_energy;
+  return {NeuralBrdf(problem.Shape(), solver.weights()), summary};
 }
 
 }  // namespace

@@ -43,10 +43,10 @@ struct FitProblem {
   // The terms' weights, >= 0; 0: the term is absent. At least one > 0.
   double log_weight = 1.0;
   double chromaticity_weight = 0.0;
-  double energy_weight = 0.0;
+  double energy_weight = 1.0;
 
   Loss loss = Loss::kSoftL1;
-  double loss_scale = 0.003;  // > 0, in units of the residuals: where rho turns from square to linear
+  double loss_scale = 0.001;  // > 0, in units of the residuals: where rho turns from square to linear
 
   // The training samples.
   Sampling sampling = Sampling::kHighlight;

@@ -5,16 +5,16 @@
 
 namespace pbnbrdf {
 
-// Lower triangular L with L L' = A + jitter * diag(A), jitter the least of 0, 1e-15, 1e-14, ... that
-// factors. J'J of a network with a dead unit is singular. A row of A that is zero (its weight moves
-// nothing) counts as having a diagonal of the smallest positive one, or of 1 if there is none.
+// Lower triangular L with L L' = A + jitter * diag(A). J'J of a network with a dead unit is singular. A
+// row of A that is zero (its weight moves nothing) counts as having the smallest positive diagonal, or
+// 1 if there is none.
 struct JitteredCholesky {
   Eigen::MatrixXd lower;
-  double jitter = 0.0;
+  double jitter = 0.0;  // the least of first_jitter, 10 first_jitter, ... that factors
 };
 
-// a: symmetric, finite, only its lower triangle is read. Throws nothing; a jitter of 1 always factors
-// a matrix that is semidefinite to rounding.
-JitteredCholesky FactorWithJitter(const Eigen::MatrixXd& a);
+// a: symmetric, finite, semidefinite but for rounding. first_jitter > 0: about the relative rounding
+// error of a.
+JitteredCholesky FactorWithJitter(const Eigen::MatrixXd& a, double first_jitter);
 
 }  // namespace pbnbrdf

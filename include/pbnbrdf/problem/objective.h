@@ -31,6 +31,9 @@ class Objective {
   // False, with `at` unspecified, if the cost or a derivative isn't finite.
   virtual bool Linearize(const double* weights, Linearization* at) = 0;
 
+  // About the largest error of hessian, relative to its diagonal, that rounding makes.
+  virtual double HessianRounding() const = 0;
+
   // Mean over samples and channels of |log1p(f cos_i) - log1p(max(0, f^) cos_i)|.
   virtual double MeanAbsLogError(const double* weights) = 0;
 };

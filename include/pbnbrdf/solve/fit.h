@@ -24,7 +24,7 @@ struct FitProgress {
 
 struct FitOptions {
   JacobianMethod jacobian = JacobianMethod::kCondensed;
-  int max_iterations = 150;          // >= 0
+  int max_iterations = 80;           // >= 0, of each stage: without the energy term, then with it
   double max_seconds = 3600.0;       // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
   int threads = 0;                   // 0: as many as the machine has
@@ -44,11 +44,12 @@ inline constexpr NameTable<Termination, 4> kTerminations = {
      {"interrupted", Termination::kInterrupted}}};
 
 struct FitSummary {
-  double initial_cost = 0.0, final_cost = 0.0;
-  int iterations = 0;
-  double seconds = 0.0;  // with sampling the material, without reading it or evaluating errors
+  double final_cost = 0.0;    // fit_problem.h
+  int iterations = 0;         // of all stages
+  bool energy_stage = false;  // whether an albedo above 1 called for the energy term
+  double seconds = 0.0;       // with sampling the material, without reading it or evaluating errors
   Termination termination = Termination::kConverged;
-  std::string message;  // the solver's own words
+  std::string message;        // the solver's own words
 };
 
 struct Fit {
@@ -57,7 +58,8 @@ struct Fit {
 };
 
 // Levenberg-Marquardt (Ceres' trust region). The same arguments give the same network to the last
-// bit, whatever the number of threads. Throws Error if the problem or the options are invalid, the
+// bit, whatever the number of threads. The energy term joins in a second stage, if the directional
+// albedo of the first stage's network exceeds 1 in a stratum. Throws Error if the problem or the options are invalid, the
 // material has next to no data, or the solver finds no usable step.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 

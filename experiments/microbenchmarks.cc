@@ -1,0 +1,154 @@
+// microbenchmarks.cc: the parts of a fit, timed one by one.
+//
+//   build/bin/microbenchmarks --benchmark_filter=Linearize
+//
+// items_per_second counts samples (network evaluations for BM_NeuralBrdf).
+#include <benchmark/benchmark.h>
+#include <ceres/problem.h>
+#include <tbb/task_arena.h>
+
+#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/problem/ceres_problem.h"
+#include "pbnbrdf/problem/condensed_cost_function.h"
+#include "pbnbrdf/problem/jittered_cholesky.h"
+
+#include <Eigen/Core>
+
+namespace pbnbrdf {
+namespace {
+
+const Brdf& Gold() {
+  static const std::unique_ptr<Brdf> gold = MakeBuiltin("satin-gold");
+  return *gold;
+}
+
+std::vector<BrdfSample> Samples(std::size_t count) {
+  return DrawSamples(Gold(), SampleSet::kTraining, Sampling::kHighlight, count, /*seed=*/1);
+}
+
+// A problem without its energy term, and weights to evaluate it at.
+struct Fixture {
+  explicit Fixture(std::size_t count, Precision precision = Precision::kSingle)
+      : samples(Samples(count)) {
+    problem.energy_weight = 0.0;
+    problem.samples = count;
+    problem.precision = precision;
+    weights = InitialWeights(problem.Shape(), samples, /*seed=*/1);
+  }
+  FitProblem problem;
+  std::vector<BrdfSample> samples;
+  std::vector<double> weights;
+};
+
+void CountSamples(benchmark::State& state, std::size_t samples) {
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * samples));
+}
+
+// Args: samples, threads, 1 for double precision.
+void BM_Linearize(benchmark::State& state) {
+  Fixture fixture(state.range(0), state.range(2) ? Precision::kDouble : Precision::kSingle);
+  const auto objective = MakeObjective(fixture.problem, fixture.samples);
+  Linearization at;
+  tbb::task_arena arena(static_cast<int>(state.range(1)));
+  for (auto _ : state) {
+    arena.execute([&] { objective->Linearize(fixture.weights.data(), &at); });
+    benchmark::DoNotOptimize(at.cost);
+  }
+  CountSamples(state, fixture.samples.size());
+}
+BENCHMARK(BM_Linearize)
+    ->ArgNames({"samples", "threads", "double"})
+    ->Args({2000, 1, 0})
+    ->Args({20000, 1, 0})
+    ->Args({20000, 2, 0})
+    ->Args({20000, 1, 1})
+    ->Args({20000, 2, 1})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+void BM_Cost(benchmark::State& state) {
+  Fixture fixture(20000);
+  const auto objective = MakeObjective(fixture.problem, fixture.samples);
+  tbb::task_arena arena(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    arena.execute([&] { benchmark::DoNotOptimize(objective->Cost(fixture.weights.data())); });
+  }
+  CountSamples(state, fixture.samples.size());
+}
+BENCHMARK(BM_Cost)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+// The factor that the condensed block adds to each evaluation.
+void BM_FactorWithJitter(benchmark::State& state) {
+  Fixture fixture(20000);
+  const auto objective = MakeObjective(fixture.problem, fixture.samples);
+  Linearization at;
+  objective->Linearize(fixture.weights.data(), &at);
+  const Eigen::Index p = at.gradient.size();
+  const Eigen::MatrixXd a = Eigen::Map<const Eigen::MatrixXd>(at.hessian.data(), p, p);
+  double jitter = 0.0;
+  for (auto _ : state) {
+    jitter = FactorWithJitter(a, objective->HessianRounding()).jitter;
+  }
+  state.counters["jitter"] = jitter;
+}
+BENCHMARK(BM_FactorWithJitter)->Unit(benchmark::kMillisecond);
+
+// One evaluation with all Jacobians as Ceres asks for it. Args: samples, 1 for the autodiff problem.
+void BM_EvaluateJacobian(benchmark::State& state) {
+  Fixture fixture(state.range(0));
+  ceres::Problem problem;
+  std::unique_ptr<Objective> objective;
+  if (state.range(1)) {
+    AddAutodiff(fixture.problem, fixture.samples, fixture.weights.data(), &problem);
+  } else {
+    objective = MakeObjective(fixture.problem, fixture.samples);
+    AddCondensed(objective.get(), fixture.weights.data(), &problem);
+  }
+  std::vector<double> residuals, gradient;
+  double cost = 0.0;
+  for (auto _ : state) {
+    problem.Evaluate({}, &cost, &residuals, &gradient, nullptr);
+  }
+  CountSamples(state, fixture.samples.size());
+}
+BENCHMARK(BM_EvaluateJacobian)
+    ->ArgNames({"samples", "autodiff"})
+    ->Args({1000, 1})
+    ->Args({1000, 0})
+    ->Args({20000, 0})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+void BM_NeuralBrdf(benchmark::State& state) {
+  Fixture fixture(16384);
+  const NeuralBrdf network(fixture.problem.Shape(), fixture.weights);
+  std::vector<DirectionPair> pairs;
+  for (const BrdfSample& s : fixture.samples) pairs.push_back(s.pair);
+  std::vector<Rgb> values(pairs.size());
+  for (auto _ : state) {
+    network.Evaluate(pairs, values);
+    benchmark::DoNotOptimize(values.data());
+  }
+  CountSamples(state, pairs.size());
+}
+BENCHMARK(BM_NeuralBrdf)->Unit(benchmark::kMillisecond);
+
+void BM_MerlLookup(benchmark::State& state) {
+  const MerlBrdf table = MerlBrdf::Tabulate(Gold());
+  std::vector<DirectionPair> pairs;
+  for (const BrdfSample& s : Samples(16384)) pairs.push_back(s.pair);
+  std::vector<Rgb> values(pairs.size());
+  for (auto _ : state) {
+    table.Evaluate(pairs, values);
+    benchmark::DoNotOptimize(values.data());
+  }
+  CountSamples(state, pairs.size());
+}
+BENCHMARK(BM_MerlLookup)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace pbnbrdf
+
+BENCHMARK_MAIN();
