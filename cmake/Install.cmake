@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 get_property(modules GLOBAL PROPERTY PBNBRDF_MODULES)
 install(TARGETS ${modules} pbnbrdf_all EXPORT pbnbrdf-targets)
-install(TARGETS pbnbrdf_cli RUNTIME)
+install(TARGETS pbnbrdf_program RUNTIME)
 install(DIRECTORY include/pbnbrdf TYPE INCLUDE)
 install(DIRECTORY problems DESTINATION ${CMAKE_INSTALL_DATADIR}/pbnbrdf)
 

@@ -1,0 +1,48 @@
+#include "pbnbrdf/base/files.h"
+
+#include "test_util.h"
+
+namespace pbnbrdf {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Files, WhatIsWrittenIsRead) {
+  TemporaryFolder folder;
+  const std::string bytes("a\0b\n\xff", 5);
+  WriteFile(folder / "x", bytes);
+  EXPECT_EQ(ReadFile(folder / "x", 5), bytes);
+  WriteFile(folder / "x", "");
+  EXPECT_EQ(ReadFile(folder / "x", 5), "");
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(Files, ErrorsNameTheFile) {
+  TemporaryFolder folder;
+  EXPECT_THAT(ErrorOf([&] { ReadFile(folder / "none", 5); }), HasSubstr("none: no such file"));
+  EXPECT_THAT(ErrorOf([&] { ReadFile(folder / "", 5); }), HasSubstr("not a regular file"));
+  WriteBytes(folder / "big", "123456");
+  EXPECT_THAT(ErrorOf([&] { ReadFile(folder / "big", 5); }),
+              HasSubstr("big: 6 bytes, at most 5 were expected"));
+}
+
+TEST(Files, AFailedWriteLeavesNothing) {
+  TemporaryFolder folder;
+  EXPECT_THAT(ErrorOf([&] { WriteFile(folder / "no/such/folder/x", "1"); }),
+              HasSubstr("x: cannot write"));
+  std::filesystem::create_directory(folder / "occupied");
+  WriteBytes(folder / "occupied/file", "1");
+  EXPECT_THAT(ErrorOf([&] { WriteFile(folder / "occupied", "1"); }), HasSubstr("cannot write"));
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(Files, CheckWritableForeseesFailure) {
+  TemporaryFolder folder;
+  EXPECT_EQ(ErrorOf([&] { CheckWritable(folder / "x"); }), "");
+  EXPECT_THAT(ErrorOf([&] { CheckWritable(folder / "none/x"); }), HasSubstr("no folder"));
+  EXPECT_THAT(ErrorOf([&] { CheckWritable(folder / ""); }), HasSubstr("is a folder"));
+  EXPECT_EQ(folder.file_count(), 0u);
+}
+
+}  // namespace
+}  // namespace pbnbrdf

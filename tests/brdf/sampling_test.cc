@@ -1,0 +1,90 @@
+#include "pbnbrdf/brdf/sampling.h"
+
+#include <set>
+
+#include "brdf/direction_pairs.h"
+#include "pbnbrdf/brdf/analytic.h"
+
+namespace pbnbrdf {
+namespace {
+
+const LambertBrdf kGrey({0.5, 0.5, 0.5});
+
+// Known nowhere, or almost.
+class UnknownBrdf final : public Brdf {
+ public:
+  void EvaluateUnclipped(std::span<const DirectionPair>, std::span<Rgb> values) const override {
+    for (Rgb& value : values) value = {};
+  }
+  bool IsKnown(const DirectionPair&) const override { return false; }
+  std::string Description() const override { return "unknown"; }
+};
+
+using Key = std::array<double, 3>;
+std::set<Key> ThetaDs(const std::vector<BrdfSample>& samples) {
+  std::set<Key> keys;
+  for (const BrdfSample& s : samples) {
+    const RusinkiewiczAngles a = ToAngles(s.pair);
+    keys.insert({a.theta_h, a.theta_d, a.phi_d});
+  }
+  return keys;
+}
+
+TEST(Sampling, SameSeedSameSamples) {
+  const auto a = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 5);
+  const auto b = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 5);
+  const auto c = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 6);
+  EXPECT_EQ(ThetaDs(a), ThetaDs(b));
+  EXPECT_NE(ThetaDs(a), ThetaDs(c));
+  EXPECT_EQ(a.size(), 1000u);
+}
+
+TEST(Sampling, TrainingAndHeldOutSetsAreDisjointEvenForOneSeed) {
+  // Both sets would be equal for the same seed if theta_d came from the same grid.
+  const auto training = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kUniform, 20000, 5);
+  const auto held_out = DrawSamples(kGrey, SampleSet::kHeldOut, Sampling::kUniform, 20000, 5);
+  const std::set<Key> a = ThetaDs(training), b = ThetaDs(held_out);
+  for (const Key& key : a) EXPECT_EQ(b.count(key), 0u);
+}
+
+TEST(Sampling, UniformIsUniformInThetaH) {
+  // Of the known angles, those with theta_d < 0.1 are nearly all: 8 equal bins of theta_h below 1.2.
+  int bins[8] = {}, total = 0;
+  for (const auto& s : DrawSamples(kGrey, SampleSet::kHeldOut, Sampling::kUniform, 200000, 1)) {
+    const RusinkiewiczAngles a = ToAngles(s.pair);
+    if (a.theta_d >= 0.1 || a.theta_h >= 1.2) continue;
+    ++bins[static_cast<int>(a.theta_h / 0.15)];
+    ++total;
+  }
+  for (int count : bins) {
+    EXPECT_NEAR(count, total / 8.0, 5.0 * std::sqrt(total / 8.0));
+  }
+}
+
+TEST(Sampling, HighlightIsDenseNearTheMirrorDirection) {
+  const auto below = [](Sampling sampling) {
+    int count = 0;
+    for (const auto& s : DrawSamples(kGrey, SampleSet::kTraining, sampling, 20000, 1)) {
+      count += ToAngles(s.pair).theta_h < 0.01;
+    }
+    return count;
+  };
+  EXPECT_GT(below(Sampling::kHighlight), 10 * below(Sampling::kUniform));
+}
+
+TEST(Sampling, ValuesAreThoseOfTheBrdf) {
+  for (const auto& s : DrawSamples(kGrey, SampleSet::kTraining, Sampling::kUniform, 100, 1)) {
+    EXPECT_TRUE(s.pair.AboveHorizon());
+    EXPECT_EQ(s.value[0], 0.5 / kPi);
+  }
+}
+
+TEST(Sampling, SaysSoWhenNothingIsKnown) {
+  EXPECT_THAT(ErrorOf([] {
+                DrawSamples(UnknownBrdf(), SampleSet::kTraining, Sampling::kUniform, 10, 1);
+              }),
+              testing::HasSubstr("too little data: 0 of"));
+}
+
+}  // namespace
+}  // namespace pbnbrdf

@@ -1,0 +1,245 @@
+// The program as a user runs it: every command, its output, its errors and exit statuses.
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/base/text.h"
+#include "pbnbrdf/network/neural_brdf.h"
+#include "test_util.h"
+
+namespace pbnbrdf {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+struct Result {
+  int status;
+  std::string out, err;
+};
+
+class Cli : public testing::Test {
+ protected:
+  // Runs the shell's "pbnbrdf <arguments>".
+  Result Run(const std::string& arguments) const {
+    const std::string command = StrCat(PBNBRDF_PROGRAM, " ", arguments, " 2> ", folder_ / "stderr");
+    FILE* pipe = popen(command.c_str(), "r");
+    std::string out;
+    std::array<char, 4096> buffer;
+    while (std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) out.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    EXPECT_TRUE(WIFEXITED(status)) << "crashed: " << arguments;
+    return {WEXITSTATUS(status), out, ReadFile(folder_ / "stderr", 1 << 20)};
+  }
+
+  // That it fails as promised: the status, one line on stderr, nothing left behind.
+  void ExpectError(const std::string& arguments, int status, const std::string& message) const {
+    const Result result = Run(arguments);
+    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
+    EXPECT_THAT(result.err, StartsWith("pbnbrdf: "));
+    EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out")) << arguments;
+  }
+
+  std::string Path(const std::string& name) const { return folder_ / name; }
+
+  // Flags of a fit that takes a moment.
+  const std::string kQuick = " --samples=500 --max_iterations=4 --hidden=5 ";
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Cli, HelpTeaches) {
+  const Result overview = Run("--help");
+  EXPECT_EQ(overview.status, 0);
+  for (const char* command : {"fit", "eval", "tabulate", "values", "info"}) {
+    EXPECT_THAT(overview.out, HasSubstr(StrCat("  ", command, " ")));
+    const Result help = Run(StrCat(command, " --help"));
+    EXPECT_EQ(help.status, 0);
+    EXPECT_THAT(help.out, HasSubstr(StrCat("  pbnbrdf ", command, " ")));
+    EXPECT_THAT(help.out, HasSubstr("Exit status: 0 done, 1 bad input or output, 2 wrong usage."));
+  }
+  EXPECT_THAT(Run("--version").out, StartsWith("pbnbrdf 0."));
+}
+
+TEST_F(Cli, HelpNamesEveryChoice) {
+  const std::string help = Run("fit --help").out;
+  for (const char* choices :
+       {"cartesian | reciprocal | multiscale", "tanh | relu", "l2 | soft_l1 | huber | cauchy",
+        "uniform", "highlight", "single | double", "condensed | autodiff"}) {
+    EXPECT_THAT(help, HasSubstr(choices));
+  }
+}
+
+TEST_F(Cli, WrongUsageExitsWith2) {
+  ExpectError("", 2, "no command given: fit | eval");
+  ExpectError("fitt", 2, "'fitt' is not a command: fit | eval | tabulate | values | info");
+  ExpectError("fit", 2, "--material is required");
+  ExpectError("fit --material=builtin:satin-gold", 2, "--out is required");
+  const std::string fit = "fit --material=builtin:satin-gold --out=" + Path("out");
+  ExpectError(fit + " --sample=3", 2, "--sample is not a flag of 'fit'; did you mean --samples?");
+  ExpectError(fit + " --json", 2, "--json is not a flag of 'fit'");
+  ExpectError(fit + " --samples=many", 2, "--samples=many is not a uint64 value");
+  ExpectError(fit + " --samples=0", 2, "--samples = 0; must be 1 to");
+  ExpectError(fit + " --samples", 2, "--samples needs a value");
+  ExpectError(fit + " --loss=hubr", 2, "--loss=hubr is not one of l2 | soft_l1 | huber | cauchy");
+  ExpectError(fit + " --terms=log,colour", 2, "--terms=colour is not one of log | chromaticity");
+  ExpectError(fit + " --terms=energy", 2, "--terms: log or chromaticity must be among them");
+  ExpectError(fit + " --encoding=polar", 2, "--encoding=polar is not one of cartesian");
+  ExpectError(fit + " --activation=gelu", 2, "--activation=gelu is not one of tanh | relu");
+  ExpectError(fit + " --hidden=21,x", 2, "--hidden: 'x' is not a whole number");
+  ExpectError(fit + " --hidden=21,-3", 2, "--hidden: a layer of -1 units");
+  ExpectError(fit + " --hidden=5000", 2, "--hidden: a layer of 5000 units; must be 1 to 256");
+  ExpectError(fit + " --loss_scale=0", 2, "--loss_scale = 0; must be finite and > 0");
+  ExpectError(fit + " --max_seconds=-1", 2, "--max_seconds = -1; must be > 0");
+  ExpectError(fit + " --threads=-1", 2, "--threads = -1; must be >= 0");
+  ExpectError(fit + " gold.binary", 2, "'gold.binary' is not a flag");
+  ExpectError("info", 2, "a file or another source is missing");
+}
+
+TEST_F(Cli, BadMaterialsExitWith1) {
+  const auto fit = [&](const std::string& material) {
+    return "fit --material='" + material + "' --out=" + Path("out");
+  };
+  ExpectError(fit(Path("none.binary")), 1, "none.binary: no such file");
+  ExpectError(fit("builtin:gold"), 1, "builtin:gold is not one of spectralon");
+  ExpectError(fit("sgd:" + Path("none.csv") + "#x"), 1, "none.csv: no such file");
+  WriteBytes(Path("short.binary"), std::string(100, '\0'));
+  ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, expected 90 x 90 x 180");
+  WriteBytes(Path("bad.safetensors"), std::string(100, '\xff'));
+  ExpectError(fit(Path("bad.safetensors")), 1, "bad.safetensors: not a safetensors file");
+  ExpectError("tabulate --material=" + Path("none.binary") + " --out=" + Path("out"), 1, "no such file");
+  ExpectError("eval --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1, "no such file");
+  ExpectError("info " + Path("none.binary"), 1, "no such file");
+}
+
+TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
+  ExpectError("fit --material=builtin:satin-gold --out=" + Path("none/x"), 1, "x: cannot write: no folder");
+  ExpectError("fit --material=builtin:satin-gold --out=" + Path("out") + " --summary=" + Path("none/s"),
+              1, "s: cannot write");
+  ExpectError("tabulate --material=builtin:satin-gold --out=" + Path(""), 1, "is a folder");
+}
+
+TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
+  const std::string material = "--material=builtin:satin-gold";
+  const Result fit = Run("fit " + material + kQuick + "--seed=7 --out=" + Path("a.safetensors") +
+                         " --summary=" + Path("a.json"));
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_EQ(fit.err, "");
+  EXPECT_THAT(fit.out, HasSubstr("mean_abs_log_error"));
+  const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  for (const char* key : {"mean_abs_log_error", "hrl", "hcl", "max_directional_albedo", "cost",
+                          "iterations", "seconds", "seed", "problem", "termination"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+  EXPECT_EQ(summary["seed"], 7);
+  EXPECT_EQ(summary["hrl"], 0.0);
+  EXPECT_EQ(summary["hcl"], 0.0);
+
+  WriteBytes(Path("again.flags"), summary["problem"]);
+  const Result again = Run("fit --quiet --flagfile=" + Path("again.flags") + " --threads=1 --out=" +
+                           Path("b.safetensors"));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.out, "");
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights(),
+            NeuralBrdf::Read(Path("b.safetensors")).weights());
+
+  const Result info = Run("info " + Path("a.safetensors"));
+  EXPECT_THAT(info.out, HasSubstr("neural BRDF 6-5-3 tanh, multiscale encoding"));
+  EXPECT_THAT(info.out, HasSubstr("seed: 7"));
+}
+
+TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
+  const std::string material = " --material=builtin:satin-gold";
+  ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
+  const Result eval = Run("eval --json --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
+  ASSERT_EQ(eval.status, 0) << eval.err;
+  const json measures = json::parse(eval.out);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : measures.items()) {
+    keys.push_back(key);
+    EXPECT_TRUE(value.is_number()) << key;
+  }
+  EXPECT_THAT(keys, testing::UnorderedElementsAre(
+                        "mean_abs_log_error", "rmse", "hrl", "hcl", "max_directional_albedo", "eal",
+                        "chromaticity_error", "parameters", "samples"));
+  EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
+  EXPECT_EQ(measures["samples"], 2000);
+  const Result text = Run("eval --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
+  EXPECT_THAT(text.out, HasSubstr("Helmholtz reciprocity loss (eq. 8)"));
+}
+
+TEST_F(Cli, ANetworkIsAMaterialToo) {
+  ASSERT_EQ(Run("fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors")).status, 0);
+  EXPECT_EQ(Run("tabulate --material=" + Path("a.safetensors") + " --out=" + Path("a.binary")).status, 0);
+  EXPECT_THAT(Run("info " + Path("a.binary")).out, HasSubstr("1111326 of 1458000 bins valid"));
+  EXPECT_EQ(Run("fit --material=" + Path("a.safetensors") + kQuick + "--out=" + Path("b.safetensors")).status, 0);
+}
+
+TEST_F(Cli, ValuesAppendsToWhatItReads) {
+  WriteBytes(Path("pairs.csv"),
+             "name,theta_i,phi_i,theta_o,phi_o\na,0.3,0,0.5,1\nb,0.3,0,2,1\n");
+  ASSERT_EQ(Run("values --material=builtin:spectralon --directions=" + Path("pairs.csv") +
+                " --out=" + Path("values.csv")).status, 0);
+  const std::string f = FormatFullPrecision(0.99 / kPi);
+  EXPECT_EQ(ReadFile(Path("values.csv"), 1 << 20),
+            StrCat("name,theta_i,phi_i,theta_o,phi_o,r,g,b\na,0.3,0,0.5,1,", f, ",", f, ",", f,
+                   "\nb,0.3,0,2,1,0,0,0\n"));
+}
+
+TEST_F(Cli, ValuesTakesVectorsFromStandardInput) {
+  const Result result =
+      Run("values --material=builtin:spectralon --directions=- --out=- <<'END'\n"
+          "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,2,1,0,1\nEND\n");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.out, HasSubstr("0,0,2,1,0,1," + FormatFullPrecision(0.99 / kPi)));
+}
+
+TEST_F(Cli, BadDirectionsAreNamed) {
+  const auto values = [&](const std::string& csv, const std::string& message) {
+    WriteBytes(Path("pairs.csv"), csv);
+    ExpectError("values --material=builtin:spectralon --directions=" + Path("pairs.csv") +
+                    " --out=" + Path("out"), 1, message);
+  };
+  values("", "pairs.csv: the first line must name the columns theta_i,phi_i,theta_o,phi_o");
+  values("theta_i,phi_i,theta_o\n", "the first line must name the columns");
+  values("theta_i,phi_i,theta_o,phi_o\n1,2,3\n", "line 2: 3 columns, expected 4");
+  values("theta_i,phi_i,theta_o,phi_o\n1,2,3,4\n\n1,2,x,4\n", "line 4, theta_o: 'x' is not a finite");
+  values("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,0,0,0,1\n", "line 2: a direction has no length");
+}
+
+TEST_F(Cli, ShippedProblemsFit) {
+  for (const char* name : {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best"}) {
+    const std::string flags = StrCat("--flagfile=", PBNBRDF_PROBLEMS, "/", name, ".flags");
+    const Result fit = Run("fit " + flags + " --material=builtin:satin-gold --samples=300" +
+                           " --max_iterations=2 --out=" + Path("a.safetensors"));
+    EXPECT_EQ(fit.status, 0) << name << ": " << fit.err;
+  }
+}
+
+TEST_F(Cli, FlagfileErrorsNameTheFile) {
+  WriteBytes(Path("x.flags"), "# a comment\n--loss=l2\n--los=l2\n");
+  ExpectError("fit --flagfile=" + Path("x.flags") + " --out=" + Path("out"), 2,
+              "x.flags: --los is not a flag of 'fit'; did you mean --loss?");
+  ExpectError("fit --flagfile=" + Path("none.flags") + " --out=" + Path("out"), 1, "no such file");
+}
+
+TEST_F(Cli, InterruptKeepsTheBestNetworkSoFar) {
+  const Result result = Run("fit --material=builtin:satin-gold --max_iterations=100000 "
+                            "--function_tolerance=0 --out=" + Path("a.safetensors") +
+                            " --summary=" + Path("a.json") + " & pid=$!; sleep 3; kill -INT $pid; wait $pid");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights().size(), 675u);
+  EXPECT_EQ(json::parse(ReadFile(Path("a.json"), 1 << 20))["termination"], "interrupted");
+}
+
+}  // namespace
+}  // namespace pbnbrdf

@@ -1,0 +1,121 @@
+// Each kernel against the plain loops that define it, at sizes around those of a register block.
+#include "pbnbrdf/kernels/kernels.h"
+
+#include "test_util.h"
+
+namespace pbnbrdf::kernels {
+namespace {
+
+template <typename T>
+std::vector<T> Random(std::size_t count, unsigned seed) {
+  const std::vector<double> numbers = RandomNumbers(count, -1.0, 1.0, seed);
+  return {numbers.begin(), numbers.end()};
+}
+
+template <typename T>
+class Kernels : public testing::Test {
+ protected:
+  // A sum of n products of numbers up to 1 is off by at most about n^2 eps; this is for n <= 128.
+  static constexpr double kTolerance = 256.0 * std::numeric_limits<T>::epsilon();
+};
+
+using Precisions = testing::Types<float, double>;
+TYPED_TEST_SUITE(Kernels, Precisions);
+
+TYPED_TEST(Kernels, DenseIsWxPlusB) {
+  using T = TypeParam;
+  for (auto [out, in] : {std::pair(1, 1), {3, 22}, {4, 6}, {21, 6}, {21, 21}, {65, 33}}) {
+    const auto layer = Random<T>(out * (in + 1), 1), x = Random<T>(in * kBatch, 2);
+    std::vector<T> y(out * kBatch);
+    Dense(layer.data(), out, in, x.data(), y.data());
+    for (int o = 0; o < out; ++o) {
+      for (int n = 0; n < kBatch; ++n) {
+        double sum = layer[o * (in + 1) + in];
+        for (int i = 0; i < in; ++i) sum += double(layer[o * (in + 1) + i]) * x[i * kBatch + n];
+        ASSERT_NEAR(y[o * kBatch + n], sum, this->kTolerance) << out << " x " << in;
+      }
+    }
+  }
+}
+
+TYPED_TEST(Kernels, DenseTransposedIsWTransposedY) {
+  using T = TypeParam;
+  for (auto [out, in] : {std::pair(1, 1), {3, 22}, {21, 6}, {33, 65}}) {
+    const auto layer = Random<T>(out * (in + 1), 3), y = Random<T>(out * kBatch, 4);
+    std::vector<T> x(in * kBatch);
+    DenseTransposed(layer.data(), out, in, y.data(), x.data());
+    for (int i = 0; i < in; ++i) {
+      for (int n = 0; n < kBatch; ++n) {
+        double sum = 0.0;
+        for (int o = 0; o < out; ++o) sum += double(layer[o * (in + 1) + i]) * y[o * kBatch + n];
+        ASSERT_NEAR(x[i * kBatch + n], sum, this->kTolerance) << out << " x " << in;
+      }
+    }
+  }
+}
+
+TYPED_TEST(Kernels, TanhIsAsAccurateAsStated) {
+  using T = TypeParam;
+  std::vector<T> x(100 * kBatch);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = static_cast<T>(std::ldexp(1.0, int(i % 64) - 50) * (i % 2 ? 1.1 : -1.3));
+  }
+  x[0] = 0;
+  std::vector<T> y = x;
+  Tanh(y.data(), y.size());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    worst = std::max(worst, std::abs(y[i] - std::tanh(double(x[i]))));
+  }
+  this->RecordProperty("worst_error", std::to_string(worst));
+  EXPECT_LT(worst, sizeof(T) == 4 ? 1e-6 : 1e-14);
+}
+
+TYPED_TEST(Kernels, PairProductsSumOverRows) {
+  using T = TypeParam;
+  for (auto [na, nb, rows, symmetric] :
+       {std::tuple(21, 21, 3, true), {21, 3, 4, false}, {7, 22, 1, false}, {1, 1, 1, true},
+        {3, 3, 3, true}, {33, 17, 2, false}}) {
+    const int a_stride = Padded(na), b_stride = Padded(nb);
+    const auto a = Random<T>(kBatch * rows * a_stride + kPad, 5);
+    const auto b = symmetric ? a : Random<T>(kBatch * rows * b_stride + kPad, 6);
+    const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
+    const int stride = pairs + kPad + 3;
+    std::vector<T> out(kBatch * stride, T(7));
+    PairProducts(a.data(), na, b.data(), nb, rows, symmetric, out.data(), stride);
+    for (int n = 0; n < kBatch; ++n) {
+      const T* at = out.data() + n * stride;
+      for (int i = 0; i < na; ++i) {
+        for (int j = symmetric ? i : 0; j < nb; ++j, ++at) {
+          double sum = 0.0;
+          for (int r = 0; r < rows; ++r) {
+            sum += double(a[(n * rows + r) * a_stride + i]) * b[(n * rows + r) * b_stride + j];
+          }
+          ASSERT_NEAR(*at, sum, this->kTolerance) << na << " x " << nb;
+        }
+      }
+      for (int k = 0; k < kPad; ++k) ASSERT_EQ(at[k], T(0));
+      for (int k = kPad; k < kPad + 3; ++k) ASSERT_EQ(at[k], T(7));
+    }
+  }
+}
+
+TYPED_TEST(Kernels, AddTransposedProductAdds) {
+  using T = TypeParam;
+  for (auto [p, q] : {std::pair(1, 1), {8, 48}, {9, 49}, {231, 253}, {21, 7}, {63, 154}}) {
+    const int x_stride = Padded(p) + kPad, y_stride = Padded(q);
+    const auto x = Random<T>(kBatch * x_stride, 7), y = Random<T>(kBatch * y_stride, 8);
+    std::vector<double> c(Padded(p) * Padded(q), 0.5);
+    AddTransposedProduct(x.data(), p, x_stride, y.data(), q, y_stride, c.data());
+    for (int i = 0; i < p; ++i) {
+      for (int j = 0; j < q; ++j) {
+        double sum = 0.5;
+        for (int n = 0; n < kBatch; ++n) sum += double(x[n * x_stride + i]) * y[n * y_stride + j];
+        ASSERT_NEAR(c[i * Padded(q) + j], sum, this->kTolerance) << p << " x " << q;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pbnbrdf::kernels

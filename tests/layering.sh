@@ -1,0 +1,17 @@
+#!/bin/sh
+# Fails if a module includes a system library that is none of its business. layering.sh SOURCE_DIR
+cd "$1" || exit 1
+status=0
+forbid() {  # forbid PATTERN FOLDER...
+  pattern=$1
+  shift
+  if grep -rnE "#include [<\"]($pattern)" "$@"; then
+    echo "the lines above include what their module must not know"
+    status=1
+  fi
+}
+forbid 'gflags|glog' include src/base src/kernels src/brdf src/network src/problem src/solve src/metrics
+forbid 'ceres|Eigen' include/pbnbrdf/base include/pbnbrdf/kernels include/pbnbrdf/brdf \
+  include/pbnbrdf/network include/pbnbrdf/metrics src/base src/kernels src/brdf src/network src/metrics
+forbid 'nlohmann' include src/base src/kernels src/brdf src/problem src/solve src/metrics
+exit $status

@@ -1,0 +1,93 @@
+// Batched passes against the scalar network, with doubles and with full jets.
+#include "pbnbrdf/network/batched_mlp.h"
+
+#include <ceres/jet.h>
+
+#include "network/random_network.h"
+#include "pbnbrdf/network/mlp.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr int kBatch = kernels::kBatch;
+constexpr int kChannels = NetworkShape::kChannels;
+// 6-5-4-3: 35 + 24 + 15.
+constexpr int kWeights = 74;
+using WeightJet = ceres::Jet<double, kWeights>;
+
+class BatchedMlpTest : public testing::TestWithParam<Activation> {
+ protected:
+  NetworkShape shape_{Encoding::kMultiscale, {5, 4}, GetParam()};
+  std::vector<double> weights_ = RandomWeights(shape_, 0.7, /*seed=*/1);
+  std::vector<double> input_ = RandomNumbers(kEncodedSize * kBatch, -1.0, 1.0, /*seed=*/2);
+
+  std::array<double, kEncodedSize> Input(int n) const {
+    std::array<double, kEncodedSize> x;
+    for (int i = 0; i < kEncodedSize; ++i) x[i] = input_[i * kBatch + n];
+    return x;
+  }
+};
+
+TEST_P(BatchedMlpTest, ForwardIsTheScalarNetwork) {
+  BatchedMlp<double> mlp(shape_, 0);
+  mlp.Forward(weights_.data(), input_.data());
+  const std::vector<const double*> blocks = shape_.Blocks<const double>(weights_.data());
+  for (int n = 0; n < kBatch; ++n) {
+    double z[kChannels];
+    EvaluateMlp(shape_, Input(n).data(), blocks.data(), z);
+    for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(mlp.output()[c * kBatch + n], z[c], 1e-13);
+  }
+}
+
+TEST_P(BatchedMlpTest, BackwardGivesTheGradientOfJets) {
+  ASSERT_EQ(shape_.num_weights(), kWeights);
+  constexpr int kRows = 2;
+  const auto seeds = RandomNumbers(kRows * kChannels * kBatch, -1.0, 1.0, /*seed=*/3);
+  BatchedMlp<double> mlp(shape_, kRows);
+  mlp.Forward(weights_.data(), input_.data());
+  for (int r = 0; r < kRows; ++r) {
+    std::copy_n(&seeds[r * kChannels * kBatch], kChannels * kBatch, mlp.output_gradient(r));
+  }
+  mlp.Backward(weights_.data());
+
+  std::vector<WeightJet> jets;
+  for (int i = 0; i < kWeights; ++i) jets.emplace_back(weights_[i], i);
+  const std::vector<const WeightJet*> blocks = shape_.Blocks<const WeightJet>(jets.data());
+  for (int n = 0; n < kBatch; n += 17) {
+    WeightJet z[kChannels];
+    EvaluateMlp(shape_, Input(n).data(), blocks.data(), z);
+    for (int r = 0; r < kRows; ++r) {
+      WeightJet sum(0.0);
+      for (int c = 0; c < kChannels; ++c) sum += seeds[(r * kChannels + c) * kBatch + n] * z[c];
+      for (int l = 0, i = 0; l < shape_.num_layers(); ++l) {
+        const int columns = shape_.in(l) + 1, out = kernels::Padded(shape_.out(l));
+        const double* input = mlp.layer_input(l) + n * kernels::Padded(columns);
+        const double* delta = mlp.delta(l) + (n * kRows + r) * out;
+        for (int o = 0; o < shape_.out(l); ++o) {
+          for (int j = 0; j < columns; ++j, ++i) {
+            EXPECT_NEAR(delta[o] * input[j], sum.v[i], 1e-12) << "weight " << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(BatchedMlpTest, SingleAgreesWithDouble) {
+  BatchedMlp<double> reference(shape_, 0);
+  reference.Forward(weights_.data(), input_.data());
+  const std::vector<float> weights(weights_.begin(), weights_.end());
+  const std::vector<float> input(input_.begin(), input_.end());
+  BatchedMlp<float> mlp(shape_, 0);
+  mlp.Forward(weights.data(), input.data());
+  for (int i = 0; i < kChannels * kBatch; ++i) {
+    EXPECT_NEAR(mlp.output()[i], reference.output()[i], 1e-5);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Activations, BatchedMlpTest,
+                         testing::Values(Activation::kTanh, Activation::kRelu),
+                         [](const auto& test) { return std::string(NameOf(kActivations, test.param)); });
+
+}  // namespace
+}  // namespace pbnbrdf

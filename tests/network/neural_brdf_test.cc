@@ -1,0 +1,107 @@
+#include "pbnbrdf/network/neural_brdf.h"
+
+#include "brdf/direction_pairs.h"
+#include "network/random_network.h"
+#include "pbnbrdf/network/mlp.h"
+#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/network/safetensors.h"
+
+namespace pbnbrdf {
+namespace {
+
+using testing::HasSubstr;
+
+NeuralBrdf RandomNetwork(Encoding encoding, Activation activation = Activation::kTanh,
+                         double scale = 1.0) {
+  const NetworkShape shape(encoding, {21, 21}, activation);
+  return NeuralBrdf(shape, RandomWeights(shape, scale, /*seed=*/1), {{"seed", "1"}});
+}
+
+TEST(NeuralBrdf, ReciprocityIsExactToTheBit) {
+  const std::vector<DirectionPair> pairs = HardAndRandomPairs(100000, /*seed=*/2);
+  std::vector<DirectionPair> swapped;
+  for (const DirectionPair& pair : pairs) swapped.push_back(Swapped(pair));
+  // Another order, so that a pair and its exchange meet in different lanes of different batches.
+  std::reverse(swapped.begin(), swapped.end());
+  for (Encoding encoding : {Encoding::kReciprocal, Encoding::kMultiscale}) {
+    for (Activation activation : {Activation::kTanh, Activation::kRelu}) {
+      const NeuralBrdf network = RandomNetwork(encoding, activation);
+      std::vector<Rgb> there(pairs.size()), back(pairs.size());
+      network.EvaluateUnclipped(pairs, there);
+      network.EvaluateUnclipped(swapped, back);
+      for (std::size_t n = 0; n < pairs.size(); ++n) ASSERT_EQ(there[n], back[pairs.size() - 1 - n]);
+    }
+  }
+}
+
+TEST(NeuralBrdf, IsTheClampedScalarNetwork) {
+  const NeuralBrdf network = RandomNetwork(Encoding::kCartesian);
+  const std::vector<DirectionPair> pairs = RandomPairs(300, /*seed=*/3);
+  std::vector<Rgb> values(pairs.size());
+  network.Evaluate(pairs, values);
+  const auto blocks = network.shape().Blocks<const double>(network.weights().data());
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    double z[3];
+    EvaluateMlp(network.shape(), Encode(Encoding::kCartesian, pairs[n]).data(), blocks.data(), z);
+    for (int c = 0; c < 3; ++c) {
+      const double f = std::max(0.0, Reflectance(z[c]));
+      EXPECT_NEAR(values[n][c], f, 1e-12 * (1.0 + f));
+    }
+  }
+}
+
+TEST(NeuralBrdf, NothingNonFiniteComesOutOfHugeWeights) {
+  const NeuralBrdf network = RandomNetwork(Encoding::kMultiscale, Activation::kRelu, 1e150);
+  const std::vector<DirectionPair> pairs = HardAndRandomPairs(1000, /*seed=*/4);
+  std::vector<Rgb> values(pairs.size());
+  network.Evaluate(pairs, values);
+  for (const Rgb& value : values) {
+    for (double f : value) EXPECT_TRUE(f >= 0.0 && f <= Brdf::kLargestValue);
+  }
+}
+
+TEST(NeuralBrdf, FilesRoundTripToTheBit) {
+  TemporaryFolder folder;
+  const NeuralBrdf network = RandomNetwork(Encoding::kMultiscale);
+  network.Write(folder / "n.safetensors");
+  const NeuralBrdf read = NeuralBrdf::Read(folder / "n.safetensors");
+  EXPECT_EQ(read.weights(), network.weights());
+  EXPECT_EQ(read.metadata(), network.metadata());
+  EXPECT_EQ(read.metadata().at("seed"), "1");
+  EXPECT_EQ(read.shape().hidden(), network.shape().hidden());
+  EXPECT_EQ(OpenBrdf(folder / "n.safetensors")->Description(), network.Description());
+}
+
+TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {
+  TemporaryFolder folder;
+  const std::string path = folder / "n.safetensors";
+  RandomNetwork(Encoding::kMultiscale).Write(path);
+  const SafetensorsFile good = ReadSafetensors(path);
+  const auto read = [&](auto change) {
+    SafetensorsFile file = good;
+    change(file);
+    WriteSafetensors(path, file);
+    return ErrorOf([&] { NeuralBrdf::Read(path); });
+  };
+  EXPECT_EQ(read([](auto&) {}), "");
+  EXPECT_THAT(read([](auto& f) { f.metadata.erase("encoding"); }),
+              HasSubstr("n.safetensors: not a fitted network: __metadata__ lacks encoding"));
+  EXPECT_THAT(read([](auto& f) { f.metadata["encoding"] = "polar"; }),
+              HasSubstr("encoding=polar is not one of cartesian | reciprocal | multiscale"));
+  EXPECT_THAT(read([](auto& f) { f.metadata["output"] = "exp"; }), HasSubstr("output=exp"));
+  EXPECT_THAT(read([](auto& f) { f.tensors.erase("fc2.weight"); }), HasSubstr("5 tensors"));
+  EXPECT_THAT(read([](auto& f) { f.tensors["fc2.weight"] = f.tensors["fc1.weight"]; }),
+              HasSubstr("tensor fc2.weight has another shape than 21 x 21"));
+  EXPECT_THAT(read([](auto& f) { f.tensors["x"] = f.tensors["fc1.bias"]; }), HasSubstr("7 tensors"));
+}
+
+TEST(NeuralBrdf, RefusesWeightsThatDontFit) {
+  const NetworkShape shape(Encoding::kMultiscale, {21, 21}, Activation::kTanh);
+  EXPECT_EQ(shape.num_weights(), 675);
+  EXPECT_THAT(ErrorOf([&] { NeuralBrdf(shape, std::vector<double>(3)); }), HasSubstr("3 numbers"));
+  EXPECT_THAT(ErrorOf([&] { NeuralBrdf(shape, std::vector<double>(675, std::nan(""))); }),
+              HasSubstr("not finite"));
+}
+
+}  // namespace
+}  // namespace pbnbrdf

@@ -1,0 +1,64 @@
+#include "pbnbrdf/problem/fit_problem.h"
+
+#include <ceres/loss_function.h>
+
+#include "pbnbrdf/brdf/builtin.h"
+#include "test_util.h"
+
+namespace pbnbrdf {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(FitProblem, ErrorsNameFieldValueAndBound) {
+  const auto error = [](auto change) {
+    FitProblem problem;
+    change(&problem);
+    return ErrorOf([&] { problem.Validate(); });
+  };
+  EXPECT_EQ(error([](FitProblem*) {}), "");
+  EXPECT_THAT(error([](FitProblem* p) { p->log_weight = -1; }),
+              HasSubstr("log_weight = -1; must be finite and >= 0"));
+  EXPECT_THAT(error([](FitProblem* p) { p->energy_weight = std::nan(""); }),
+              HasSubstr("energy_weight = nan"));
+  EXPECT_THAT(error([](FitProblem* p) { p->log_weight = 0; }), HasSubstr("terms: "));
+  EXPECT_THAT(error([](FitProblem* p) { p->loss_scale = 0; }), HasSubstr("must be finite and > 0"));
+  EXPECT_THAT(error([](FitProblem* p) { p->samples = 0; }), HasSubstr("samples = 0; must be 1 to"));
+  EXPECT_THAT(error([](FitProblem* p) { p->hidden = {}; }), HasSubstr("hidden: 0 layers"));
+  EXPECT_THAT(error([](FitProblem* p) { p->hidden = {21, 0}; }), HasSubstr("a layer of 0 units"));
+  EXPECT_THAT(error([](FitProblem* p) { p->energy_theta = -1; }), HasSubstr("energy_theta"));
+}
+
+TEST(Loss, EachIsConcaveWithRhoOfZeroZero) {
+  // What the condensed block needs for its square root to be real.
+  for (const auto& [name, loss] : kLosses) {
+    const auto rho = MakeLoss(loss, 0.1);
+    if (loss == Loss::kL2) {
+      EXPECT_EQ(rho, nullptr);
+      continue;
+    }
+    double values[3];
+    rho->Evaluate(0.0, values);
+    EXPECT_EQ(values[0], 0.0) << name;
+    for (double s = 1e-8; s < 1e4; s *= 3) {
+      rho->Evaluate(s, values);
+      EXPECT_GE(values[0], s * values[1] * (1 - 1e-12)) << name << " at " << s;
+      EXPECT_LE(values[2], 0.0) << name << " at " << s;
+    }
+  }
+}
+
+TEST(InitialWeights, OutputsStartAtTheMeanOfTheTargets) {
+  const NetworkShape shape(Encoding::kMultiscale, {4}, Activation::kTanh);
+  const auto samples = DrawSamples(*MakeBuiltin("spectralon"), SampleSet::kTraining,
+                                   Sampling::kUniform, 100, /*seed=*/1);
+  const std::vector<double> weights = InitialWeights(shape, samples, /*seed=*/1);
+  for (int c = 1; c <= 3; ++c) {
+    EXPECT_NEAR(weights[shape.offset(1) + 5 * c - 1], std::log1p(0.99 / kPi), 1e-12);
+  }
+  EXPECT_EQ(weights, InitialWeights(shape, samples, /*seed=*/1));
+  EXPECT_NE(weights, InitialWeights(shape, samples, /*seed=*/2));
+}
+
+}  // namespace
+}  // namespace pbnbrdf

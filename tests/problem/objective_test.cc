@@ -1,0 +1,230 @@
+// The fast path against the reference: cost, J'r and J'J of the batched objective against those of
+// jets through the whole network, robust loss included.
+#include "pbnbrdf/problem/objective.h"
+
+#include <ceres/crs_matrix.h>
+#include <ceres/problem.h>
+#include <tbb/task_arena.h>
+
+#include <Eigen/Core>
+
+#include "network/random_network.h"
+#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/network/mlp.h"
+#include "pbnbrdf/problem/ceres_problem.h"
+
+namespace pbnbrdf {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct Case {
+  std::string name;
+  FitProblem problem;
+  std::vector<double> weights;
+};
+
+std::vector<BrdfSample> Samples(const FitProblem& problem) {
+  return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling,
+                     problem.samples, problem.seed);
+}
+
+FitProblem SmallProblem() {
+  FitProblem problem;
+  problem.hidden = {5, 4};
+  problem.samples = 150;  // a full batch and a part of one
+  problem.energy_weight = 0.0;
+  problem.energy_strata = 4;
+  problem.energy_theta = 8;
+  problem.energy_phi = 6;
+  problem.loss = Loss::kL2;
+  return problem;
+}
+
+Case MakeCase(const std::string& name, FitProblem problem, double output_bias = 0.5,
+              void (*change)(const NetworkShape&, std::vector<double>*) = nullptr) {
+  const NetworkShape shape = problem.Shape();
+  std::vector<double> weights = RandomWeights(shape, 0.8, /*seed=*/11);
+  for (int c = 1; c <= 3; ++c) {
+    const int last = shape.num_layers() - 1;
+    weights[shape.offset(last) + c * (shape.in(last) + 1) - 1] = output_bias;
+  }
+  if (change != nullptr) change(shape, &weights);
+  return {name, problem, weights};
+}
+
+// The first hidden layer's unit 1 never fires, its unit 2 has no way out.
+void KillUnits(const NetworkShape& shape, std::vector<double>* weights) {
+  const int columns = shape.in(0) + 1;
+  (*weights)[1 * columns + columns - 1] = -100.0;
+  for (int o = 0; o < shape.out(1); ++o) {
+    (*weights)[shape.offset(1) + o * (shape.in(1) + 1) + 2] = 0.0;
+  }
+}
+
+std::vector<Case> Cases() {
+  std::vector<Case> cases;
+  FitProblem problem = SmallProblem();
+  cases.push_back(MakeCase("Log", problem));
+  problem.activation = Activation::kRelu;
+  cases.push_back(MakeCase("Relu", problem));
+  cases.push_back(MakeCase("DeadUnitsRelu", problem, 0.5, KillUnits));
+  problem.activation = Activation::kTanh;
+  cases.push_back(MakeCase("DeadUnitsTanh", problem, 0.5, KillUnits));
+  problem.chromaticity_weight = 0.3;
+  cases.push_back(MakeCase("LogAndChromaticity", problem));
+  problem.log_weight = 0.0;
+  cases.push_back(MakeCase("Chromaticity", problem));
+  problem = SmallProblem();
+  problem.energy_weight = 2.0;
+  cases.push_back(MakeCase("Energy", problem));
+  // Channel values around 0: some outputs are clamped in the energy term, others not.
+  cases.push_back(MakeCase("ClampedOutputs", problem, -0.1));
+  problem.chromaticity_weight = 0.3;
+  cases.push_back(MakeCase("AllTerms", problem));
+  for (Loss loss : {Loss::kSoftL1, Loss::kHuber, Loss::kCauchy}) {
+    problem.loss = loss;
+    problem.loss_scale = 0.1;
+    cases.push_back(MakeCase(StrCat("AllTerms_", NameOf(kLosses, loss)), problem));
+  }
+  problem.encoding = Encoding::kReciprocal;
+  cases.push_back(MakeCase("Reciprocal", problem));
+  problem.hidden = {21, 21};
+  problem.samples = 40;
+  cases.push_back(MakeCase("Published675Weights", problem));
+  problem.hidden = {3, 9, 5};
+  cases.push_back(MakeCase("ThreeHiddenLayers", problem));
+  return cases;
+}
+
+Linearization Reference(const Case& c) {
+  std::vector<double> weights = c.weights;
+  ceres::Problem problem;
+  AddAutodiff(c.problem, Samples(c.problem), weights.data(), &problem);
+  Linearization at;
+  std::vector<double> residuals;
+  ceres::CRSMatrix crs;
+  EXPECT_TRUE(problem.Evaluate({}, &at.cost, &residuals, &at.gradient, &crs));
+  RowMajor jacobian = RowMajor::Zero(crs.num_rows, crs.num_cols);
+  for (int row = 0; row < crs.num_rows; ++row) {
+    for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
+      jacobian(row, crs.cols[k]) += crs.values[k];
+    }
+  }
+  const RowMajor hessian = jacobian.transpose() * jacobian;
+  at.hessian.assign(hessian.data(), hessian.data() + hessian.size());
+  return at;
+}
+
+// The largest deviations, in units of what rounding is relative to: the cost; |J_i| |r|; |J_i| |J_j|.
+struct Deviation {
+  double cost = 0.0, gradient = 0.0, hessian = 0.0;
+};
+
+Deviation Compare(const Linearization& a, const Linearization& b) {
+  const std::size_t p = b.gradient.size();
+  const auto norm = [&](std::size_t i) { return std::sqrt(b.hessian[i * p + i]); };
+  Deviation worst;
+  worst.cost = std::abs(a.cost - b.cost) / b.cost;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < p; ++i) largest = std::max(largest, norm(i));
+  for (std::size_t i = 0; i < p; ++i) {
+    // A weight that moves nothing may be off by rounding against the others.
+    const double scale_i = std::max(norm(i), 1e-6 * largest);
+    worst.gradient = std::max(worst.gradient, std::abs(a.gradient[i] - b.gradient[i]) /
+                                                  (scale_i * std::sqrt(2.0 * b.cost)));
+    for (std::size_t j = 0; j < p; ++j) {
+      const double scale = scale_i * std::max(norm(j), 1e-6 * largest);
+      worst.hessian = std::max(worst.hessian,
+                               std::abs(a.hessian[i * p + j] - b.hessian[i * p + j]) / scale);
+    }
+  }
+  return worst;
+}
+
+class ObjectiveTest : public testing::TestWithParam<Case> {
+ protected:
+  static Linearization Fast(Precision precision, int threads = 2) {
+    FitProblem problem = GetParam().problem;
+    problem.precision = precision;
+    const auto objective = MakeObjective(problem, Samples(problem));
+    Linearization at;
+    tbb::task_arena arena(threads);
+    EXPECT_TRUE(arena.execute([&] {
+      return objective->Linearize(GetParam().weights.data(), &at);
+    }));
+    EXPECT_NEAR(objective->Cost(GetParam().weights.data()), at.cost, 1e-12 * at.cost);
+    return at;
+  }
+
+  static void ExpectAgreement(Precision precision, double tolerance) {
+    const Deviation worst = Compare(Fast(precision), Reference(GetParam()));
+    RecordProperty("worst_cost", std::to_string(worst.cost / tolerance));
+    RecordProperty("worst_gradient", std::to_string(worst.gradient / tolerance));
+    RecordProperty("worst_hessian", std::to_string(worst.hessian / tolerance));
+    EXPECT_LE(worst.cost, tolerance);
+    EXPECT_LE(worst.gradient, tolerance);
+    EXPECT_LE(worst.hessian, tolerance);
+  }
+};
+
+TEST_P(ObjectiveTest, DoubleAgreesWithJets) { ExpectAgreement(Precision::kDouble, 1e-10); }
+
+TEST_P(ObjectiveTest, SingleAgreesWithJets) { ExpectAgreement(Precision::kSingle, 1e-4); }
+
+TEST_P(ObjectiveTest, SameBitsForOneAndTwoThreads) {
+  const Linearization one = Fast(Precision::kSingle, 1), two = Fast(Precision::kSingle, 2);
+  EXPECT_EQ(one.cost, two.cost);
+  EXPECT_EQ(one.gradient, two.gradient);
+  EXPECT_EQ(one.hessian, two.hessian);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, ObjectiveTest, testing::ValuesIn(Cases()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(Objective, ManySamplesGiveTheSameBitsForOneAndTwoThreads) {
+  FitProblem problem = SmallProblem();
+  problem.samples = 5000;
+  const auto objective = MakeObjective(problem, Samples(problem));
+  const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/3);
+  Linearization at[2];
+  for (int threads : {1, 2}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] { objective->Linearize(weights.data(), &at[threads - 1]); });
+  }
+  EXPECT_EQ(at[0].cost, at[1].cost);
+  EXPECT_EQ(at[0].gradient, at[1].gradient);
+  EXPECT_EQ(at[0].hessian, at[1].hessian);
+}
+
+TEST(Objective, SaysWhenItIsNotFinite) {
+  const FitProblem problem = SmallProblem();
+  const auto objective = MakeObjective(problem, Samples(problem));
+  std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/3);
+  weights.back() = 1e4;  // expm1(1e4) is infinite
+  Linearization at;
+  EXPECT_FALSE(objective->Linearize(weights.data(), &at));
+  EXPECT_FALSE(std::isfinite(objective->Cost(weights.data())));
+}
+
+TEST(Objective, MeanAbsLogErrorIsThatOfEquation6) {
+  const FitProblem problem = SmallProblem();
+  const std::vector<BrdfSample> samples = Samples(problem);
+  const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/3);
+  const NetworkShape shape = problem.Shape();
+  const auto blocks = shape.Blocks<const double>(weights.data());
+  double sum = 0.0;
+  for (const BrdfSample& s : samples) {
+    double z[3];
+    EvaluateMlp(shape, Encode(shape.encoding(), s.pair).data(), blocks.data(), z);
+    for (int c = 0; c < 3; ++c) {
+      const double f = std::max(0.0, std::expm1(z[c]));
+      sum += std::abs(std::log1p(s.value[c] * s.pair.wi.z) - std::log1p(f * s.pair.wi.z));
+    }
+  }
+  EXPECT_NEAR(MakeObjective(problem, samples)->MeanAbsLogError(weights.data()),
+              sum / (3.0 * static_cast<double>(samples.size())), 1e-6);
+}
+
+}  // namespace
+}  // namespace pbnbrdf

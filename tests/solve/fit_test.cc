@@ -1,0 +1,135 @@
+// Whole fits, small ones.
+#include "pbnbrdf/solve/fit.h"
+
+#include "brdf/direction_pairs.h"
+#include "network/random_network.h"
+#include "pbnbrdf/brdf/builtin.h"
+
+namespace pbnbrdf {
+namespace {
+
+using testing::HasSubstr;
+
+FitProblem SmallProblem() {
+  FitProblem problem;
+  problem.hidden = {6};
+  problem.samples = 500;
+  problem.energy_weight = 0.0;
+  return problem;
+}
+
+double MeanAbsDifference(const Brdf& a, const Brdf& b) {
+  const std::vector<DirectionPair> pairs = RandomPairs(2000, /*seed=*/21);
+  std::vector<Rgb> values_a(pairs.size()), values_b(pairs.size());
+  a.Evaluate(pairs, values_a);
+  b.Evaluate(pairs, values_b);
+  double sum = 0.0;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    for (int c = 0; c < 3; ++c) {
+      sum += std::abs(std::log1p(values_a[n][c]) - std::log1p(values_b[n][c]));
+    }
+  }
+  return sum / (3.0 * static_cast<double>(pairs.size()));
+}
+
+TEST(FitBrdf, FindsANetworkThatExists) {
+  // The material is a network of the same shape: predictions must come back, weights may permute.
+  const NetworkShape shape(Encoding::kMultiscale, {4}, Activation::kTanh);
+  std::vector<double> weights = RandomWeights(shape, 0.7, /*seed=*/5);
+  for (int c = 1; c <= 3; ++c) weights[shape.offset(1) + 5 * c - 1] = 1.5;  // positive everywhere
+  const NeuralBrdf truth(shape, weights);
+  FitProblem problem = SmallProblem();
+  problem.precision = Precision::kDouble;
+  FitOptions options;
+  options.max_iterations = 200;
+  const Fit fit = FitBrdf(truth, problem, options);
+  EXPECT_LT(MeanAbsDifference(truth, fit.network), 2e-5);
+}
+
+TEST(FitBrdf, IsTheSameToTheBitForAnyNumberOfThreads) {
+  FitProblem problem = SmallProblem();
+  problem.samples = 3000;
+  FitOptions options;
+  options.max_iterations = 10;
+  std::vector<double> weights[2];
+  for (int threads : {1, 2}) {
+    options.threads = threads;
+    weights[threads - 1] = FitBrdf(*MakeBuiltin("satin-gold"), problem, options).network.weights();
+  }
+  EXPECT_EQ(weights[0], weights[1]);
+}
+
+TEST(FitBrdf, CondensedTakesTheStepsOfTheAutodiffProblem) {
+  FitProblem problem = SmallProblem();
+  problem.precision = Precision::kDouble;
+  problem.samples = 300;
+  problem.chromaticity_weight = 0.1;
+  FitOptions options;
+  options.max_iterations = 6;
+  std::vector<double> costs[2];
+  for (JacobianMethod method : {JacobianMethod::kCondensed, JacobianMethod::kAutodiff}) {
+    options.jacobian = method;
+    auto& trace = costs[method == JacobianMethod::kAutodiff];
+    options.on_iteration = [&](const FitProgress& progress) {
+      trace.push_back(progress.cost);
+      return true;
+    };
+    FitBrdf(*MakeBuiltin("satin-gold"), problem, options);
+  }
+  ASSERT_EQ(costs[0].size(), costs[1].size());
+  for (std::size_t i = 0; i < costs[0].size(); ++i) {
+    EXPECT_NEAR(costs[0][i], costs[1][i], 1e-6 * costs[1][i]) << "iteration " << i;
+  }
+}
+
+TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
+  // Half a sphere of white: brighter than anything physical, so the term must act.
+  const NetworkShape shape(Encoding::kMultiscale, {2}, Activation::kTanh);
+  std::vector<double> weights(shape.num_weights(), 0.0);
+  for (int c = 1; c <= 3; ++c) weights[shape.offset(1) + 3 * c - 1] = std::log1p(1.2 / kPi);
+  const NeuralBrdf too_bright(shape, weights);
+  FitProblem problem = SmallProblem();
+  EXPECT_FALSE(FitBrdf(too_bright, problem, {}).summary.energy_stage);
+  problem.energy_weight = 100.0;
+  const Fit fit = FitBrdf(too_bright, problem, {});
+  EXPECT_TRUE(fit.summary.energy_stage);
+  const DirectionPair pair = {FromSpherical(0.5, 0.0), FromSpherical(0.2, 2.0)};
+  Rgb value;
+  fit.network.Evaluate({&pair, 1}, {&value, 1});
+  EXPECT_LT(value[0], 1.02 / kPi);
+  EXPECT_GT(value[0], 0.9 / kPi);
+}
+
+TEST(FitBrdf, StopsWhenAskedAndKeepsTheBest) {
+  FitOptions options;
+  double last_cost = 0.0;
+  options.on_iteration = [&](const FitProgress& progress) {
+    last_cost = progress.cost;
+    return progress.iteration < 3;
+  };
+  const Fit fit = FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options);
+  EXPECT_EQ(fit.summary.termination, Termination::kInterrupted);
+  EXPECT_EQ(fit.summary.iterations, 3);
+  EXPECT_LE(fit.summary.final_cost, last_cost);
+}
+
+TEST(FitBrdf, StopsOnTime) {
+  FitOptions options;
+  options.max_seconds = 1e-3;
+  EXPECT_EQ(FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options).summary.termination,
+            Termination::kMaxSeconds);
+}
+
+TEST(FitBrdf, BadOptionsAreNamed) {
+  const auto error = [](auto change) {
+    FitOptions options;
+    change(&options);
+    return ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options); });
+  };
+  EXPECT_THAT(error([](FitOptions* o) { o->max_iterations = -1; }), HasSubstr("max_iterations = -1"));
+  EXPECT_THAT(error([](FitOptions* o) { o->max_seconds = 0; }), HasSubstr("max_seconds = 0"));
+  EXPECT_THAT(error([](FitOptions* o) { o->threads = -2; }), HasSubstr("threads = -2"));
+}
+
+}  // namespace
+}  // namespace pbnbrdf
