@@ -14,8 +14,6 @@
 #include "pbnbrdf/problem/condensed_cost_function.h"
 #include "pbnbrdf/problem/jittered_cholesky.h"
 
-#include <Eigen/Core>
-
 namespace pbnbrdf {
 namespace {
 
@@ -85,11 +83,10 @@ void BM_FactorWithJitter(benchmark::State& state) {
   const auto objective = MakeObjective(fixture.problem, fixture.samples);
   Linearization at;
   objective->Linearize(fixture.weights.data(), &at);
-  const Eigen::Index p = at.gradient.size();
-  const Eigen::MatrixXd a = Eigen::Map<const Eigen::MatrixXd>(at.hessian.data(), p, p);
+  const int p = static_cast<int>(at.gradient.size());
   double jitter = 0.0;
   for (auto _ : state) {
-    jitter = FactorWithJitter(a, objective->HessianRounding()).jitter;
+    jitter = FactorWithJitter(at.hessian.data(), p, objective->HessianRounding()).jitter;
   }
   state.counters["jitter"] = jitter;
 }

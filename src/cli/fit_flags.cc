@@ -25,7 +25,8 @@ DEFINE_string(sampling, "highlight",
 DEFINE_uint64(samples, 20000, "training samples");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
-DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference");
+DEFINE_string(solver, "tiny_lm", "Levenberg-Marquardt: tiny_lm | lm, Ceres' own, slower");
+DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, with --solver=lm");
 DEFINE_int32(max_iterations, 80, "stop a stage after so many iterations");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
@@ -87,6 +88,7 @@ FitProblem ParseProblem() {
 
 FitOptions ParseOptions() {
   FitOptions options;
+  options.solver = ParseName(kSolvers, "solver", FLAGS_solver);
   options.jacobian = ParseName(kJacobianMethods, "jacobian", FLAGS_jacobian);
   options.max_iterations = FLAGS_max_iterations;
   options.max_seconds = FLAGS_max_seconds;
@@ -106,7 +108,7 @@ std::vector<std::string> ProblemFlagNames() {
 }
 
 std::vector<std::string> SolverFlagNames() {
-  return {"jacobian", "max_iterations", "max_seconds", "function_tolerance"};
+  return {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance"};
 }
 
 FitProblem ProblemFromFlags() { return AsUsage(ParseProblem); }

@@ -20,6 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Rows of the register block of AddTransposedProduct: 3 vectors wide, it fills the register file.
 constexpr int kBlockRows = HWY_MAX_BYTES >= 64 ? 8 : 4;
 constexpr int kBlockVectors = 3;
+constexpr int kRowProductRows = HWY_MAX_BYTES >= 64 ? 4 : 2;
 static_assert(kPad % kBlockRows == 0);
 
 // kRows outputs at two vectors of samples; W is read as w[o * stride_o + i * stride_i].
@@ -140,6 +141,59 @@ HWY_INLINE void AddProduct(const T* x, int p, int x_stride, const T* y, int q, i
   }
 }
 
+// kX x kY entries of c, each a dot product along rows.
+template <int kX, int kY>
+HWY_INLINE void RowProductBlock(const double* x, int x_stride, const double* y, int y_stride,
+                                int size, double* c, int c_stride) {
+  const hn::ScalableTag<double> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  hn::Vec<decltype(d)> sum[kX][kY];
+  for (auto& row : sum) {
+    for (auto& s : row) s = hn::Zero(d);
+  }
+  int k = 0;
+  for (; k + lanes <= size; k += lanes) {
+    hn::Vec<decltype(d)> from[kY];
+    for (int j = 0; j < kY; ++j) from[j] = hn::LoadU(d, y + j * y_stride + k);
+    for (int i = 0; i < kX; ++i) {
+      const auto factor = hn::LoadU(d, x + i * x_stride + k);
+      for (int j = 0; j < kY; ++j) sum[i][j] = hn::MulAdd(factor, from[j], sum[i][j]);
+    }
+  }
+  for (int i = 0; i < kX; ++i) {
+    for (int j = 0; j < kY; ++j) {
+      double total = hn::GetLane(hn::SumOfLanes(d, sum[i][j]));
+      for (int rest = k; rest < size; ++rest) total += x[i * x_stride + rest] * y[j * y_stride + rest];
+      c[i * c_stride + j] -= total;
+    }
+  }
+}
+
+template <int kX>
+HWY_INLINE void RowProductBlocks(const double* x, int x_stride, const double* y, int rows_y,
+                                 int y_stride, int size, double* c, int c_stride) {
+  int j = 0;
+  for (; j + 4 <= rows_y; j += 4) {
+    RowProductBlock<kX, 4>(x, x_stride, y + j * y_stride, y_stride, size, c + j, c_stride);
+  }
+  for (; j < rows_y; ++j) {
+    RowProductBlock<kX, 1>(x, x_stride, y + j * y_stride, y_stride, size, c + j, c_stride);
+  }
+}
+
+void SubtractRowProductsD(const double* x, int rows_x, int x_stride, const double* y, int rows_y,
+                          int y_stride, int size, double* c, int c_stride) {
+  int i = 0;
+  for (; i + kRowProductRows <= rows_x; i += kRowProductRows) {
+    RowProductBlocks<kRowProductRows>(x + i * x_stride, x_stride, y, rows_y, y_stride, size,
+                                      c + i * c_stride, c_stride);
+  }
+  for (; i < rows_x; ++i) {
+    RowProductBlocks<1>(x + i * x_stride, x_stride, y, rows_y, y_stride, size, c + i * c_stride,
+                        c_stride);
+  }
+}
+
 // The exported names: one for each precision, as HWY_EXPORT wants plain functions.
 #define PBNBRDF_KERNELS(T, Suffix)                                                              \
   void Dense##Suffix(const T* layer, int out, int in, const T* x, T* y) {                       \
@@ -206,6 +260,13 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
 PBNBRDF_DISPATCH(float, F)
 PBNBRDF_DISPATCH(double, D)
 #undef PBNBRDF_DISPATCH
+
+HWY_EXPORT(SubtractRowProductsD);
+void SubtractRowProducts(const double* x, int rows_x, int x_stride, const double* y, int rows_y,
+                         int y_stride, int size, double* c, int c_stride) {
+  HWY_DYNAMIC_DISPATCH(SubtractRowProductsD)
+  (x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);
+}
 
 }  // namespace pbnbrdf::kernels
 #endif  // HWY_ONCE

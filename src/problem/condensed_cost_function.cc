@@ -1,6 +1,6 @@
 #include "pbnbrdf/problem/condensed_cost_function.h"
 
-#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "pbnbrdf/problem/jittered_cholesky.h"
@@ -28,20 +28,25 @@ bool CondensedCostFunction::Evaluate(double const* const* parameters, double* re
   Linearization at;
   if (!objective_->Linearize(weights.data(), &at)) return false;
   const JitteredCholesky factor =
-      FactorWithJitter(Eigen::Map<const Eigen::MatrixXd>(at.hessian.data(), p, p),
-                       objective_->HessianRounding());
-  Eigen::Map<Eigen::VectorXd> projected(residuals, p);
-  projected = factor.lower.triangularView<Eigen::Lower>().solve(
-      Eigen::Map<const Eigen::VectorXd>(at.gradient.data(), p));
-  residuals[p] = std::sqrt(std::max(0.0, 2.0 * at.cost - projected.squaredNorm()));
-
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      FactorWithJitter(at.hessian.data(), p, objective_->HessianRounding());
+  double* projected = residuals;
+  std::copy(at.gradient.begin(), at.gradient.end(), projected);
+  factor.lower.SolveLower(projected);
+  double rest = 2.0 * at.cost;
+  for (int i = 0; i < p; ++i) rest -= projected[i] * projected[i];
+  residuals[p] = std::sqrt(std::max(0.0, rest));
   for (int layer = 0; layer < shape.num_layers(); ++layer) {
     if (jacobians[layer] == nullptr) continue;
+    // L', whose column for a weight is that weight's row of L; then the row of zeros.
     const int columns = shape.block_size(layer);
-    Eigen::Map<RowMajor> jacobian(jacobians[layer], p + 1, columns);
-    jacobian.topRows(p) = factor.lower.middleRows(shape.offset(layer), columns).transpose();
-    jacobian.row(p).setZero();
+    std::fill_n(jacobians[layer], static_cast<std::size_t>(p + 1) * columns, 0.0);
+    for (int column = 0; column < columns; ++column) {
+      const int weight = shape.offset(layer) + column;
+      for (int i = 0; i <= weight; ++i) {
+        jacobians[layer][static_cast<std::size_t>(i) * columns + column] =
+            factor.lower.row(weight)[i];
+      }
+    }
   }
   return true;
 }

@@ -1,38 +1,42 @@
 #include "pbnbrdf/problem/jittered_cholesky.h"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace pbnbrdf {
 namespace {
 
 // The square roots of the diagonal, none of them 0.
-Eigen::VectorXd Scale(const Eigen::MatrixXd& a) {
+std::vector<double> Scale(const double* a, int size) {
+  std::vector<double> scale(size);
   double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    if (a(i, i) > 0.0) least = std::min(least, a(i, i));
+  for (int i = 0; i < size; ++i) {
+    scale[i] = std::sqrt(std::max(0.0, a[i * std::size_t(size) + i]));
+    if (scale[i] > 0.0) least = std::min(least, scale[i]);
   }
   if (!std::isfinite(least)) least = 1.0;
-  return a.diagonal().unaryExpr([&](double d) { return std::sqrt(d > 0.0 ? d : least); });
+  std::replace(scale.begin(), scale.end(), 0.0, least);
+  return scale;
 }
 
 }  // namespace
 
-JitteredCholesky FactorWithJitter(const Eigen::MatrixXd& a, double first_jitter) {
-  const Eigen::VectorXd scale = Scale(a);
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const Eigen::MatrixXd scaled = inverse.asDiagonal() * a * inverse.asDiagonal();
-  JitteredCholesky result;
-  for (double jitter = first_jitter;; jitter *= 10.0) {
-    result.lower = scaled;
-    result.lower.diagonal().array() += jitter;
-    Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(result.lower);
-    result.jitter = jitter;
-    if (factor.info() == Eigen::Success || jitter > 1.0) break;
+JitteredCholesky FactorWithJitter(const double* a, int size, double first_jitter) {
+  const std::vector<double> scale = Scale(a, size);
+  JitteredCholesky result = {Cholesky(size), first_jitter};
+  for (;; result.jitter *= 10.0) {
+    for (int i = 0; i < size; ++i) {
+      double* row = result.lower.row(i);
+      for (int j = 0; j < i; ++j) row[j] = a[i * std::size_t(size) + j] / (scale[i] * scale[j]);
+      row[i] = a[i * std::size_t(size) + i] / (scale[i] * scale[i]) + result.jitter;
+    }
+    if (result.lower.Factor()) break;
   }
-  result.lower.triangularView<Eigen::StrictlyUpper>().setZero();
-  result.lower = scale.asDiagonal() * result.lower;
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j <= i; ++j) result.lower.row(i)[j] *= scale[i];
+  }
   return result;
 }
 

@@ -7,7 +7,6 @@
 #include "network/random_network.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/problem/ceres_problem.h"
-#include "pbnbrdf/problem/jittered_cholesky.h"
 
 namespace pbnbrdf {
 namespace {
@@ -108,38 +107,6 @@ TEST_P(CondensedTest, RefusesWhatIsNotFinite) {
 INSTANTIATE_TEST_SUITE_P(Activations, CondensedTest,
                          testing::Values(Activation::kTanh, Activation::kRelu),
                          [](const auto& test) { return std::string(NameOf(kActivations, test.param)); });
-
-TEST(JitteredCholesky, FactorsADefiniteMatrix) {
-  const Eigen::MatrixXd b = Eigen::MatrixXd::Random(20, 20);
-  const Eigen::MatrixXd a = b * b.transpose();
-  const JitteredCholesky factor = FactorWithJitter(a, 1e-15);
-  EXPECT_LE(factor.jitter, 1e-12);
-  EXPECT_LT((factor.lower * factor.lower.transpose() - a).norm(), 1e-10 * a.norm());
-  EXPECT_TRUE(factor.lower.isLowerTriangular());
-}
-
-TEST(JitteredCholesky, AddsTheLeastJitterToASingularMatrix) {
-  // Rank 5 of 20, badly scaled, a row of zeros.
-  Eigen::MatrixXd b = Eigen::MatrixXd::Random(20, 5);
-  for (int i = 0; i < 20; ++i) b.row(i) *= std::pow(10.0, i - 10);
-  b.row(7).setZero();
-  const Eigen::MatrixXd a = b * b.transpose();
-  const JitteredCholesky factor = FactorWithJitter(a, 1e-15);
-  EXPECT_LE(factor.jitter, 1e-12);
-  EXPECT_TRUE(factor.lower.allFinite());
-  const Eigen::MatrixXd product = factor.lower * factor.lower.transpose();
-  for (int i = 0; i < 20; ++i) {
-    for (int j = 0; j < 20; ++j) {
-      EXPECT_NEAR(product(i, j), a(i, j), 1e-11 * std::sqrt(product(i, i) * product(j, j)));
-    }
-  }
-}
-
-TEST(JitteredCholesky, FactorsZero) {
-  const JitteredCholesky factor = FactorWithJitter(Eigen::MatrixXd::Zero(3, 3), 1e-6);
-  EXPECT_TRUE(factor.lower.allFinite());
-  EXPECT_GT(factor.lower(2, 2), 0.0);
-}
 
 }  // namespace
 }  // namespace pbnbrdf

@@ -44,6 +44,10 @@ template <typename T>
 void AddTransposedProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,
                           double* c);
 
+// c[i][j] -= sum over k < size of x[i][k] y[j][k], for i < rows_x and j < rows_y. Row-major, any sizes.
+void SubtractRowProducts(const double* x, int rows_x, int x_stride, const double* y, int rows_y,
+                         int y_stride, int size, double* c, int c_stride);
+
 // The instruction set in use: "AVX3", "AVX2", ...
 const char* InstructionSet();
 

@@ -1,7 +1,7 @@
 // jittered_cholesky.h: a factor of a symmetric matrix that is positive semidefinite but for rounding.
 #pragma once
 
-#include <Eigen/Core>
+#include "pbnbrdf/kernels/cholesky.h"
 
 namespace pbnbrdf {
 
@@ -9,12 +9,12 @@ namespace pbnbrdf {
 // row of A that is zero (its weight moves nothing) counts as having the smallest positive diagonal, or
 // 1 if there is none.
 struct JitteredCholesky {
-  Eigen::MatrixXd lower;
+  Cholesky lower;
   double jitter = 0.0;  // the least of first_jitter, 10 first_jitter, ... that factors
 };
 
-// a: symmetric, finite, semidefinite but for rounding. first_jitter > 0: about the relative rounding
-// error of a.
-JitteredCholesky FactorWithJitter(const Eigen::MatrixXd& a, double first_jitter);
+// a: size x size, symmetric, finite, semidefinite but for rounding. first_jitter > 0: about the
+// relative rounding error of a.
+JitteredCholesky FactorWithJitter(const double* a, int size, double first_jitter);
 
 }  // namespace pbnbrdf

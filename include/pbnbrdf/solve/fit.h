@@ -12,6 +12,7 @@
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/solve/stage.h"
 
 namespace pbnbrdf {
 
@@ -22,8 +23,16 @@ struct FitProgress {
   double seconds = 0.0;        // since the start, without evaluating heldout_error
 };
 
+enum class Solver {
+  kTinyLm,  // Levenberg-Marquardt on the normal equations (tiny_lm.h)
+  kLm,      // Ceres' Levenberg-Marquardt (ceres_lm.h): the same steps, at several times the cost
+};
+
+inline constexpr NameTable<Solver, 2> kSolvers = {{{"tiny_lm", Solver::kTinyLm}, {"lm", Solver::kLm}}};
+
 struct FitOptions {
-  JacobianMethod jacobian = JacobianMethod::kCondensed;
+  Solver solver = Solver::kTinyLm;
+  JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: with solver lm only
   int max_iterations = 80;           // >= 0, of each stage: without the energy term, then with it
   double max_seconds = 3600.0;       // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
@@ -34,14 +43,6 @@ struct FitOptions {
   // Throws Error, naming the field, its value and what it must be.
   void Validate() const;
 };
-
-enum class Termination { kConverged, kMaxIterations, kMaxSeconds, kInterrupted };
-
-inline constexpr NameTable<Termination, 4> kTerminations = {
-    {{"converged", Termination::kConverged},
-     {"max_iterations", Termination::kMaxIterations},
-     {"max_seconds", Termination::kMaxSeconds},
-     {"interrupted", Termination::kInterrupted}}};
 
 struct FitSummary {
   double final_cost = 0.0;    // fit_problem.h
@@ -57,10 +58,10 @@ struct Fit {
   FitSummary summary;
 };
 
-// Levenberg-Marquardt (Ceres' trust region). The same arguments give the same network to the last
-// bit, whatever the number of threads. The energy term joins in a second stage, if the directional
-// albedo of the first stage's network exceeds 1 in a stratum. Throws Error if the problem or the options are invalid, the
-// material has next to no data, or the solver finds no usable step.
+// The same arguments give the same network to the last bit, whatever the number of threads. The energy
+// term joins in a second stage, if the directional albedo of the first stage's network exceeds 1 in a
+// stratum. Throws Error if the problem or the options are invalid, the material has next to no data,
+// or the solver finds no usable step.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf

@@ -1,0 +1,208 @@
+#include "pbnbrdf/solve/tiny_lm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/kernels/cholesky.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr double kFirstRadius = 1e4, kSmallestRadius = 1e-32, kLargestRadius = 1e16;
+constexpr double kLeastDecrease = 1e-3;  // of the predicted one, for a step to be taken
+constexpr int kMostRisingSteps = 5;
+// The damping is relative to the diagonal of J'J in weights scaled by 1 / (1 + |J_i|), and there at
+// least this.
+constexpr double kLeastDiagonal = 1e-6;
+
+// Whether a step is good enough, judged against a cost that may lie a few steps back.
+class StepJudge {
+ public:
+  explicit StepJudge(double cost)
+      : least_(cost), current_(cost), reference_(cost), candidate_(cost) {}
+
+  double least() const { return least_; }
+
+  // The decrease of the cost over the predicted one, the better of: of this step, of all since the
+  // reference.
+  double Quality(double cost, double predicted) const {
+    return std::max((current_ - cost) / predicted,
+                    (reference_ - cost) / (since_reference_ + predicted));
+  }
+
+  void Take(double cost, double predicted) {
+    current_ = cost;
+    since_candidate_ += predicted;
+    since_reference_ += predicted;
+    if (cost < least_) {
+      least_ = candidate_ = cost;
+      since_candidate_ = 0.0;
+      rising_steps_ = 0;
+    } else {
+      ++rising_steps_;
+      if (cost > candidate_) {
+        candidate_ = cost;
+        since_candidate_ = 0.0;
+      }
+    }
+    if (rising_steps_ == kMostRisingSteps) {
+      reference_ = candidate_;
+      since_reference_ = since_candidate_;
+    }
+  }
+
+ private:
+  double least_, current_, reference_, candidate_;
+  double since_reference_ = 0.0, since_candidate_ = 0.0;  // predicted decreases
+  int rising_steps_ = 0;
+};
+
+class TinyLm {
+ public:
+  TinyLm(Objective* objective, const StageOptions& options, std::vector<double>* best)
+      : objective_(objective),
+        options_(options),
+        best_(best),
+        x_(*best),
+        trial_(*best),
+        step_(best->size()),
+        cholesky_(static_cast<int>(best->size())) {}
+
+  StageResult Run() {
+    if (!objective_->Linearize(x_.data(), &at_)) Fail("the cost isn't finite at the first weights");
+    StepJudge judge(at_.cost);
+    result_.cost = at_.cost;
+    FixScale();
+    while (MayContinue(judge.least())) {
+      ++result_.iterations;
+      double predicted = 0.0;
+      const double cost = ComputeStep(&predicted) ? objective_->Cost(trial_.data())
+                                                  : std::numeric_limits<double>::infinity();
+      const double quality = std::isfinite(cost) ? judge.Quality(cost, predicted) : -1.0;
+      const double change = std::abs(at_.cost - cost);
+      if (!(quality > kLeastDecrease)) {
+        ShrinkRadius();
+        if (Stalled(change)) break;
+        continue;
+      }
+      const double tolerated = options_.function_tolerance * at_.cost;
+      if (!objective_->Linearize(trial_.data(), &next_)) {
+        ShrinkRadius();
+        continue;
+      }
+      std::swap(at_, next_);
+      x_ = trial_;
+      judge.Take(cost, predicted);
+      if (cost <= judge.least()) Keep(cost);
+      GrowRadius(quality);
+      if (change <= tolerated) {
+        Stop(Termination::kConverged,
+             StrCat("|cost change| / cost: ", change / at_.cost, " <= ", options_.function_tolerance));
+        break;
+      }
+    }
+    return result_;
+  }
+
+ private:
+  bool MayContinue(double cost) {
+    if (options_.on_iteration && !options_.on_iteration(result_.iterations, cost)) {
+      return Stop(Termination::kInterrupted, "the user stopped it");
+    }
+    if (result_.iterations >= options_.max_iterations) {
+      return Stop(Termination::kMaxIterations, StrCat(result_.iterations, " iterations"));
+    }
+    if (options_.seconds_left && options_.seconds_left() <= 0.0) {
+      return Stop(Termination::kMaxSeconds, "the time is used up");
+    }
+    return true;
+  }
+
+  bool Stop(Termination termination, const std::string& message) {
+    result_.termination = termination;
+    result_.message = message;
+    return false;
+  }
+
+  // When the radius is spent, or the cost moves by no more than rounding makes it.
+  bool Stalled(double change) {
+    if (radius_ < kSmallestRadius) {
+      Stop(Termination::kConverged, StrCat("trust region radius ", radius_, " < ", kSmallestRadius));
+      return true;
+    }
+    if (change <= options_.function_tolerance * at_.cost) {
+      Stop(Termination::kConverged,
+           StrCat("|cost change| / cost: ", change / at_.cost, " <= ", options_.function_tolerance));
+      return true;
+    }
+    return false;
+  }
+
+  void Keep(double cost) {
+    *best_ = x_;
+    result_.cost = cost;
+  }
+
+  double Diagonal(std::size_t i) const { return at_.hessian[i * x_.size() + i]; }
+
+  // Of the weights, from the first Jacobian, for good.
+  void FixScale() {
+    scale_.resize(x_.size());
+    for (std::size_t i = 0; i < x_.size(); ++i) scale_[i] = 1.0 / (1.0 + std::sqrt(Diagonal(i)));
+  }
+
+  // step = -(A + D)^-1 g, trial = x + step. False if A + D isn't positive definite or the step isn't
+  // finite. predicted: the decrease of the cost that the linear model promises, > 0.
+  bool ComputeStep(double* predicted) {
+    const std::size_t p = x_.size();
+    std::vector<double> damping(p);
+    for (std::size_t i = 0; i < p; ++i) {
+      const double scaled = scale_[i] * scale_[i] * Diagonal(i);
+      damping[i] = std::max(scaled, kLeastDiagonal) / (radius_ * scale_[i] * scale_[i]);
+      double* row = cholesky_.row(static_cast<int>(i));
+      std::copy_n(&at_.hessian[i * p], i + 1, row);
+      row[i] += damping[i];
+      step_[i] = -at_.gradient[i];
+    }
+    if (!cholesky_.Factor()) return false;
+    cholesky_.Solve(step_.data());
+    // -(g's + s'As / 2) with As = -g - Ds: half of (s'Ds - g's).
+    *predicted = 0.0;
+    for (std::size_t i = 0; i < p; ++i) {
+      *predicted += 0.5 * step_[i] * (damping[i] * step_[i] - at_.gradient[i]);
+      trial_[i] = x_[i] + step_[i];
+    }
+    return std::isfinite(*predicted) && *predicted > 0.0;
+  }
+
+  void ShrinkRadius() {
+    radius_ /= shrink_;
+    shrink_ *= 2.0;
+  }
+
+  void GrowRadius(double quality) {
+    radius_ /= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * quality - 1.0, 3));
+    radius_ = std::min(radius_, kLargestRadius);
+    shrink_ = 2.0;
+  }
+
+  Objective* objective_;
+  const StageOptions& options_;
+  std::vector<double>* best_;
+  std::vector<double> x_, trial_, step_, scale_;
+  Linearization at_, next_;
+  Cholesky cholesky_;
+  double radius_ = kFirstRadius, shrink_ = 2.0;
+  StageResult result_;
+};
+
+}  // namespace
+
+StageResult MinimizeTinyLm(Objective* objective, const StageOptions& options,
+                           std::vector<double>* weights) {
+  return TinyLm(objective, options, weights).Run();
+}
+
+}  // namespace pbnbrdf
