@@ -1,0 +1,91 @@
+#!/bin/sh
+# What there is to do here: ./do demo | test | build | bench | sanitize. On Debian 12, as root or with sudo.
+set -eu
+cd "$(dirname "$0")"
+build=build
+packages="ccache cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libgflags-dev libgmock-dev
+          libgoogle-glog-dev libgtest-dev libhwy-dev libtbb-dev ninja-build nlohmann-json3-dev"
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+# Installs the Debian packages that are missing.
+install_packages() {
+  missing=""
+  for package in $packages; do
+    dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2> /dev/null | grep -q '^ii' ||
+      missing="$missing $package"
+  done
+  [ -z "$missing" ] && return
+  echo "Installing Debian packages:$missing"
+  as_root apt-get update -qq
+  # shellcheck disable=SC2086
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing \
+    > /dev/null
+}
+
+# build_in FOLDER [CMAKE_OPTION ...]
+build_in() {
+  folder=$1
+  shift
+  install_packages
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" > /dev/null
+  cmake --build "$folder" --parallel "$(nproc)"
+}
+
+demo() {
+  build_in "$build" --log-level=WARNING
+  pbnbrdf=$build/bin/pbnbrdf
+  material=builtin:satin-gold
+  echo
+  echo "1. What it is to be fitted:"
+  $pbnbrdf info $material
+  echo
+  echo "2. A network of 675 weights fitted to it:   pbnbrdf fit --material=$material --out=gold.safetensors"
+  $pbnbrdf fit --material=$material --out=$build/gold.safetensors
+  echo
+  echo "3. Its values beside the material's, wi and wo in one plane (columns r,g,b, 1/sr):"
+  pairs="theta_i,phi_i,theta_o,phi_o
+0.5,0,0.0,3.141592653589793
+0.5,0,0.5,3.141592653589793
+0.5,0,0.9,3.141592653589793
+1.3,0,1.2,3.141592653589793"
+  for source in $material $build/gold.safetensors; do
+    echo "   pbnbrdf values --material=$source --directions=- --out=-"
+    echo "$pairs" | $pbnbrdf values --material=$source --directions=- --out=-
+  done
+  cat <<TXT
+
+Next: fit a material of your own, a MERL file for instance,
+  $pbnbrdf fit --material=gold.binary --out=gold.safetensors
+  $pbnbrdf eval --fit=gold.safetensors --material=gold.binary
+compare with the published set-up (problems/nbrdf.flags), list the built-in materials
+  $pbnbrdf info builtin:
+or turn the fit into a MERL file that a renderer reads
+  $pbnbrdf tabulate --material=$build/gold.safetensors --out=gold.binary
+TXT
+}
+
+run_tests() {
+  build_in "$build" -DPBNBRDF_WERROR=ON
+  ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)"
+}
+
+# The tests under the address and undefined behaviour sanitizers.
+sanitize() {
+  build_in build-sanitize -DPBNBRDF_SANITIZE=ON -DPBNBRDF_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo
+  ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" --exclude-regex '^package$'
+}
+
+case ${1:-} in
+  demo) demo ;;
+  test) run_tests ;;
+  build) build_in "$build" ;;
+  bench) build_in "$build" && "$build/bin/microbenchmarks" ;;
+  sanitize) sanitize ;;
+  *)
+    echo "usage: ./do demo | test | build | bench | sanitize" >&2
+    exit 2
+    ;;
+esac
