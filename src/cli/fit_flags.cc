@@ -22,12 +22,12 @@ DEFINE_string(loss, "soft_l1", "robust loss of the log and chromaticity terms: "
 DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square to linear");
 DEFINE_string(sampling, "highlight",
               "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
-DEFINE_uint64(samples, 20000, "training samples");
+DEFINE_uint64(samples, 10000, "training samples");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
 DEFINE_string(solver, "tiny_lm", "Levenberg-Marquardt: tiny_lm | lm, Ceres' own, slower");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, with --solver=lm");
-DEFINE_int32(max_iterations, 80, "stop a stage after so many iterations");
+DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
 

@@ -50,7 +50,7 @@ struct FitProblem {
 
   // The training samples.
   Sampling sampling = Sampling::kHighlight;
-  std::size_t samples = 20000;
+  std::size_t samples = 10000;
   std::uint64_t seed = 1;  // of the samples and of the initial weights
 
   // The energy term's quadrature: strata of incident angles, equal in solid angle, and nodes for each.
