@@ -115,14 +115,14 @@ TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
   for (int c = 1; c <= 3; ++c) weights[shape.offset(1) + 3 * c - 1] = std::log1p(1.2 / kPi);
   const NeuralBrdf too_bright(shape, weights);
   FitProblem problem = SmallProblem();
+  problem.loss = Loss::kL2;  // a robust loss would rather be right at most samples and break out at some
   EXPECT_FALSE(FitBrdf(too_bright, problem, {}).summary.energy_stage);
   problem.energy_weight = 100.0;
   const Fit fit = FitBrdf(too_bright, problem, {});
   EXPECT_TRUE(fit.summary.energy_stage);
   for (double theta_i : {0.1, 0.5, 1.0}) {
     EXPECT_NEAR(DirectionalAlbedo(too_bright, theta_i)[0], 1.2, 1e-3);
-    EXPECT_LT(DirectionalAlbedo(fit.network, theta_i)[0], 1.06);  // a penalty, no bound
-    EXPECT_GT(DirectionalAlbedo(fit.network, theta_i)[0], 0.9);
+    EXPECT_NEAR(DirectionalAlbedo(fit.network, theta_i)[0], 1.0, 0.01);
   }
 }
 

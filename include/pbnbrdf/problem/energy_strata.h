@@ -5,7 +5,8 @@
 
 #include "pbnbrdf/network/batched_mlp.h"
 #include "pbnbrdf/network/encoded_batches.h"
-#include "pbnbrdf/problem/objective.h"
+#include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/problem/linearization.h"
 
 namespace pbnbrdf {
 

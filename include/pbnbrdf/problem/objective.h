@@ -3,21 +3,13 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/problem/linearization.h"
 
 namespace pbnbrdf {
-
-// After robust weighting (rows scaled by sqrt(rho'), as Ceres' corrector does), with J the Jacobian of
-// all residuals r, P weights:
-struct Linearization {
-  double cost = 0.0;             // fit_problem.h
-  std::vector<double> gradient;  // J'r, P
-  std::vector<double> hessian;   // J'J, P x P, symmetric
-};
 
 class Objective {
  public:
