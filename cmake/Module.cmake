@@ -5,6 +5,8 @@ target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wno-re
 if(PBNBRDF_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+  # Eigen allocates otherwise under the address sanitizer, and libceres frees what headers allocated.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # pbnbrdf_module(NAME [MODULES module ...] [LIBS target ...] [PRIVATE_LIBS target ...])

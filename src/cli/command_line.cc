@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <numeric>
 #include <sstream>
 
@@ -20,6 +21,11 @@ template <typename... Parts>
   throw UsageError(StrCat(parts...));
 }
 
+// A flag's value as its user would write it: gflags shows doubles with all 17 digits.
+std::string ShownValue(const std::string& type, const std::string& value) {
+  return type == "double" ? FormatNumber(ParseNumber("flag", value)) : value;
+}
+
 // The number of letters to insert, delete or replace to get from a to b (Levenshtein).
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -35,8 +41,16 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::string NearestFlag(const Command& command, const std::string& name) {
-  return *std::min_element(command.flags.begin(), command.flags.end(),
+std::vector<std::string> AllFlags(const Command& command) {
+  std::vector<std::string> names;
+  for (const FlagGroup& group : command.flags) {
+    names.insert(names.end(), group.names.begin(), group.names.end());
+  }
+  return names;
+}
+
+std::string NearestFlag(const std::vector<std::string>& flags, const std::string& name) {
+  return *std::min_element(flags.begin(), flags.end(),
                            [&](const std::string& a, const std::string& b) {
                              return EditDistance(name, a) < EditDistance(name, b);
                            });
@@ -44,7 +58,7 @@ std::string NearestFlag(const Command& command, const std::string& name) {
 
 class Parser {
  public:
-  explicit Parser(const Command& command) : command_(command) {}
+  explicit Parser(const Command& command) : command_(command), flags_(AllFlags(command)) {}
 
   void Parse(const std::vector<std::string>& arguments, int depth) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -77,7 +91,7 @@ class Parser {
 
  private:
   bool IsKnown(const std::string& name) const {
-    return name == "flagfile" || std::count(command_.flags.begin(), command_.flags.end(), name) > 0;
+    return name == "flagfile" || std::count(flags_.begin(), flags_.end(), name) > 0;
   }
 
   bool IsSwitch(const std::string& name) const {
@@ -97,7 +111,7 @@ class Parser {
     if (name == "flagfile") return ReadFlagfile(value, depth);
     if (!IsKnown(name)) {
       FailUsage("--", name, " is not a flag of '", command_.name, "'; did you mean --",
-                NearestFlag(command_, name), "? See pbnbrdf ", command_.name, " --help");
+                NearestFlag(flags_, name), "? See pbnbrdf ", command_.name, " --help");
     }
     if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
       gflags::CommandLineFlagInfo info;
@@ -124,6 +138,7 @@ class Parser {
   }
 
   const Command& command_;
+  const std::vector<std::string> flags_;
   std::string argument_;
 };
 
@@ -141,18 +156,21 @@ std::string ParseFlags(const Command& command, const std::vector<std::string>& a
 std::string HelpText(const Command& command) {
   std::ostringstream help;
   help << "pbnbrdf " << command.name << ": " << command.summary << "\n\n" << command.usage;
-  if (!command.flags.empty()) help << "\n";
-  for (const std::string& name : command.flags) {
-    gflags::CommandLineFlagInfo info;
-    gflags::GetCommandLineFlagInfo(name.c_str(), &info);
-    help << "  --" << name << std::string(name.size() < 20 ? 20 - name.size() : 1, ' ')
-         << info.description;
-    if (!info.default_value.empty() && info.type != "bool") {
-      help << " [" << info.default_value << "]";
+  for (const FlagGroup& group : command.flags) {
+    help << "\n" << group.title << (group.title.empty() ? "" : ":\n");
+    for (const std::string& name : group.names) {
+      gflags::CommandLineFlagInfo info;
+      gflags::GetCommandLineFlagInfo(name.c_str(), &info);
+      help << "  --" << std::left << std::setw(20) << name << " " << info.description;
+      if (!info.default_value.empty() && info.type != "bool") {
+        help << " [" << ShownValue(info.type, info.default_value) << "]";
+      }
+      help << "\n";
     }
-    help << "\n";
   }
-  if (command.name == "fit") help << "  --flagfile            a file of flags, one a line\n";
+  if (!command.flags.empty()) {
+    help << "\n--flagfile=FILE reads flags from a file, one a line; later flags replace earlier ones.\n";
+  }
   if (!command.notes.empty()) help << "\n" << command.notes;
   help << "\nExit status: 0 done, 1 bad input or output, 2 wrong usage.\n";
   return help.str();
@@ -161,9 +179,9 @@ std::string HelpText(const Command& command) {
 std::vector<std::string> FlagLines(const std::vector<std::string>& names) {
   std::vector<std::string> lines;
   for (const std::string& name : names) {
-    std::string value;
-    if (gflags::GetCommandLineOption(name.c_str(), &value)) {
-      lines.push_back(StrCat("--", name, "=", value));
+    gflags::CommandLineFlagInfo info;
+    if (gflags::GetCommandLineFlagInfo(name.c_str(), &info)) {
+      lines.push_back(StrCat("--", name, "=", ShownValue(info.type, info.current_value)));
     }
   }
   return lines;

@@ -14,13 +14,18 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+struct FlagGroup {
+  std::string title;  // "" for the first group
+  std::vector<std::string> names;
+};
+
 struct Command {
   std::string name;
-  std::string summary;              // one line
-  std::string usage;                // examples, a line each
-  std::string notes;                // more lines for --help
-  std::vector<std::string> flags;   // those of gflags' that belong to it
-  std::string argument;             // what a positional argument is; empty: there is none
+  std::string summary;           // one line
+  std::string usage;             // examples, a line each
+  std::string notes;             // more lines for --help
+  std::vector<FlagGroup> flags;  // those of gflags' that belong to it
+  std::string argument;          // what a positional argument is; empty: there is none
   int (*run)(const std::string& argument);
 };
 

@@ -38,7 +38,7 @@ Command EvalCommand() {
   command.summary = "measures a fit against its material";
   command.usage = "  pbnbrdf eval --fit=gold.safetensors --material=gold.binary --json\n";
   command.notes = kSourceNotes;
-  command.flags = {"fit", "material", "json", "eval_samples", "eval_seed"};
+  command.flags = {{"", {"fit", "material", "json", "eval_samples", "eval_seed"}}};
   command.run = RunEval;
   return command;
 }

@@ -17,6 +17,7 @@
 #include "report.h"
 #include "shared_flags.h"
 
+DECLARE_string(terms);
 DEFINE_string(summary, "", "write measures, cost, time and the problem to this JSON file");
 DEFINE_bool(quiet, false, "print nothing");
 
@@ -43,6 +44,7 @@ NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summa
                               const nlohmann::ordered_json& measures, const std::string& flags) {
   return {{"version", PBNBRDF_VERSION},
           {"material", FLAGS_material},
+          {"terms", FLAGS_terms},
           {"problem", flags},
           {"seed", StrCat(problem.seed)},
           {"termination", std::string(NameOf(kTerminations, summary.termination))},
@@ -68,8 +70,8 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
 // The flags that repeat this fit, as a flagfile.
 std::string ProblemFlagfile() {
   std::vector<std::string> names = {"material"};
-  for (const auto& group : {ProblemFlagNames(), SolverFlagNames()}) {
-    names.insert(names.end(), group.begin(), group.end());
+  for (const FlagGroup& group : ProblemFlags()) {
+    names.insert(names.end(), group.names.begin(), group.names.end());
   }
   std::string text;
   for (const std::string& line : FlagLines(names)) text += line + "\n";
@@ -123,11 +125,8 @@ Command FitCommand() {
       "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary --out=gold.safetensors\n";
   command.notes = std::string(kSourceNotes) +
                   "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
-  command.flags = {"material", "out", "summary", "quiet"};
-  for (const auto& group : {ProblemFlagNames(), SolverFlagNames()}) {
-    command.flags.insert(command.flags.end(), group.begin(), group.end());
-  }
-  command.flags.push_back("threads");
+  command.flags = {{"", {"material", "out", "summary", "quiet", "threads"}}};
+  for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);
   command.run = RunFit;
   return command;
 }

@@ -2,7 +2,6 @@
 
 #include <gflags/gflags.h>
 
-#include "command_line.h"
 #include "pbnbrdf/base/text.h"
 #include "shared_flags.h"
 
@@ -26,7 +25,7 @@ DEFINE_uint64(samples, 10000, "training samples");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
 DEFINE_string(solver, "tiny_lm", "Levenberg-Marquardt: tiny_lm | lm, Ceres' own, slower");
-DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, with --solver=lm");
+DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, always with lm");
 DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
@@ -100,15 +99,14 @@ FitOptions ParseOptions() {
 
 }  // namespace
 
-std::vector<std::string> ProblemFlagNames() {
-  return {"encoding",      "hidden",        "activation",   "terms",      "log_weight",
-          "chromaticity_weight", "energy_weight", "energy_strata", "energy_theta", "energy_phi",
-          "loss",          "loss_scale",    "sampling",     "samples",    "seed",
-          "precision"};
-}
-
-std::vector<std::string> SolverFlagNames() {
-  return {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance"};
+std::vector<FlagGroup> ProblemFlags() {
+  return {{"The network", {"encoding", "hidden", "activation", "precision"}},
+          {"The terms",
+           {"terms", "log_weight", "chromaticity_weight", "energy_weight", "energy_strata",
+            "energy_theta", "energy_phi", "loss", "loss_scale"}},
+          {"The samples", {"sampling", "samples", "seed"}},
+          {"The solver",
+           {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance"}}};
 }
 
 FitProblem ProblemFromFlags() { return AsUsage(ParseProblem); }

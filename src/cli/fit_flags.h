@@ -1,16 +1,15 @@
 // fit_flags.h: the flags that describe a fit.
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "pbnbrdf/solve/fit.h"
 
 namespace pbnbrdf::cli {
 
-// The names of the flags that make up a problem; those of how to solve it are in SolverFlagNames.
-std::vector<std::string> ProblemFlagNames();
-std::vector<std::string> SolverFlagNames();
+// The flags that make up a problem and say how to solve it: with them a fit can be repeated.
+std::vector<FlagGroup> ProblemFlags();
 
 // Throw UsageError if a flag's value is none that the flag takes.
 FitProblem ProblemFromFlags();

@@ -26,7 +26,7 @@ Command TabulateCommand() {
   command.summary = "turns any source of reflectance into a MERL file";
   command.usage = "  pbnbrdf tabulate --material=builtin:satin-gold --out=gold.binary\n";
   command.notes = kSourceNotes;
-  command.flags = {"material", "out"};
+  command.flags = {{"", {"material", "out"}}};
   command.run = RunTabulate;
   return command;
 }

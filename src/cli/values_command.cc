@@ -51,7 +51,7 @@ Command ValuesCommand() {
       "columns r,g,b are appended: linear RGB in 1/sr, without the cosine, 17 significant digits; 0\n"
       "where a direction isn't above the horizon.\n\n" +
       std::string(kSourceNotes);
-  command.flags = {"material", "directions", "out"};
+  command.flags = {{"", {"material", "directions", "out"}}};
   command.run = RunValues;
   return command;
 }

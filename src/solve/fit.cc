@@ -134,9 +134,6 @@ void FitOptions::Validate() const {
     Fail("function_tolerance = ", function_tolerance, "; must be >= 0");
   }
   if (threads < 0) Fail("threads = ", threads, "; must be >= 0");
-  if (jacobian == JacobianMethod::kAutodiff && solver != Solver::kLm) {
-    Fail("jacobian = autodiff: must go with solver = lm");
-  }
 }
 
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options) {

@@ -157,6 +157,12 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
   EXPECT_THAT(info.out, HasSubstr("seed: 7"));
 }
 
+TEST_F(Cli, TheReferencePathFitsToo) {
+  const Result fit = Run("fit --material=builtin:satin-gold --jacobian=autodiff --terms=log" + kQuick +
+                         "--samples=50 --out=" + Path("a.safetensors"));
+  EXPECT_EQ(fit.status, 0) << fit.err;
+}
+
 TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
   const std::string material = " --material=builtin:satin-gold";
   ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);

@@ -32,7 +32,7 @@ inline constexpr NameTable<Solver, 2> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
 
 struct FitOptions {
   Solver solver = Solver::kTinyLm;
-  JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: with solver lm only
+  JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
   int max_iterations = 150;          // >= 0, of each stage: without the energy term, then with it
   double max_seconds = 3600.0;       // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
