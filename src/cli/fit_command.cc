@@ -19,6 +19,7 @@
 
 DECLARE_string(terms);
 DEFINE_string(summary, "", "write measures, cost, time and the problem to this JSON file");
+DEFINE_string(trace, "", "write a row for each iteration to this CSV");
 DEFINE_bool(quiet, false, "print nothing");
 
 namespace pbnbrdf::cli {
@@ -38,6 +39,11 @@ void OnInterrupt(int) {
 void ShowProgress(const FitProgress& progress) {
   std::fprintf(stderr, "\r\033[Kiteration %d  cost %.4g  held-out error %.5f  %.1f s",
                progress.iteration, progress.cost, progress.heldout_error, progress.seconds);
+}
+
+std::string TraceRow(const FitProgress& progress) {
+  return StrCat(progress.iteration, ",", FormatNumber(progress.seconds), ",",
+                FormatNumber(progress.cost), ",", FormatNumber(progress.heldout_error), "\n");
 }
 
 NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summary,
@@ -85,12 +91,15 @@ int RunFit(const std::string&) {
   FitOptions options = OptionsFromFlags();
   CheckWritable(FLAGS_out);
   if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
+  if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
   const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
 
   const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
   std::signal(SIGINT, OnInterrupt);
+  std::string trace = "iteration,seconds,cost,heldout_error\n";
   options.on_iteration = [&](const FitProgress& progress) {
     if (show_progress) ShowProgress(progress);
+    trace += TraceRow(progress);
     return !interrupted;
   };
   Fit fit = FitBrdf(*material, problem, options);
@@ -105,6 +114,7 @@ int RunFit(const std::string&) {
   if (!FLAGS_summary.empty()) {
     WriteFile(FLAGS_summary, SummaryJson(measures, problem, fit.summary, flags).dump(2) + "\n");
   }
+  if (!FLAGS_trace.empty()) WriteFile(FLAGS_trace, trace);
   if (!FLAGS_quiet) {
     std::cout << FLAGS_out << ": " << fit.network.Description() << "; "
               << NameOf(kTerminations, fit.summary.termination) << " after "
@@ -125,7 +135,7 @@ Command FitCommand() {
       "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary --out=gold.safetensors\n";
   command.notes = std::string(kSourceNotes) +
                   "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
-  command.flags = {{"", {"material", "out", "summary", "quiet", "threads"}}};
+  command.flags = {{"", {"material", "out", "summary", "trace", "quiet", "threads"}}};
   for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);
   command.run = RunFit;
   return command;

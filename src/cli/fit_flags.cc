@@ -22,6 +22,8 @@ DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square t
 DEFINE_string(sampling, "highlight",
               "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
 DEFINE_uint64(samples, 10000, "training samples");
+DEFINE_uint64(first_samples, 1000, "samples to start with; --samples or more: all at once");
+DEFINE_double(growth, 3.0, "factor of samples each time that the cost falls slowly");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
 DEFINE_string(solver, "tiny_lm", "Levenberg-Marquardt: tiny_lm | lm, Ceres' own, slower");
@@ -79,6 +81,8 @@ FitProblem ParseProblem() {
   problem.loss_scale = FLAGS_loss_scale;
   problem.sampling = ParseName(kSamplings, "sampling", FLAGS_sampling);
   problem.samples = FLAGS_samples;
+  problem.first_samples = FLAGS_first_samples;
+  problem.growth = FLAGS_growth;
   problem.seed = FLAGS_seed;
   problem.precision = ParseName(kPrecisions, "precision", FLAGS_precision);
   problem.Validate();
@@ -104,7 +108,7 @@ std::vector<FlagGroup> ProblemFlags() {
           {"The terms",
            {"terms", "log_weight", "chromaticity_weight", "energy_weight", "energy_strata",
             "energy_theta", "energy_phi", "loss", "loss_scale"}},
-          {"The samples", {"sampling", "samples", "seed"}},
+          {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
            {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance"}}};
 }

@@ -36,7 +36,7 @@ ceres::LossFunction* Weighted(std::unique_ptr<ceres::LossFunction> loss, double 
 }
 
 template <typename Term>
-void AddPointTerm(const FitProblem& problem, const std::vector<BrdfSample>& samples, double weight,
+void AddPointTerm(const FitProblem& problem, std::span<const BrdfSample> samples, double weight,
                   const std::vector<double*>& blocks, ceres::Problem* ceres_problem) {
   if (weight == 0.0) return;
   const NetworkShape shape = problem.Shape();
@@ -75,7 +75,7 @@ void AddCondensed(Objective* objective, double* weights, ceres::Problem* ceres_p
                                   objective->shape().Blocks(weights));
 }
 
-void AddAutodiff(const FitProblem& problem, const std::vector<BrdfSample>& samples,
+void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples,
                  double* weights, ceres::Problem* ceres_problem) {
   const std::vector<double*> blocks = problem.Shape().Blocks(weights);
   AddPointTerm<LogResidual>(problem, samples, problem.log_weight, blocks, ceres_problem);

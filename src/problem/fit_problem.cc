@@ -38,6 +38,8 @@ void FitProblem::Validate() const {
     Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
   }
   CheckCount("samples", samples, 1, kMostSamples);
+  CheckCount("first_samples", first_samples, 1, kMostSamples);
+  if (!(growth > 1.0) || !std::isfinite(growth)) Fail("growth = ", growth, "; must be finite and > 1");
   CheckCount("energy_strata", static_cast<std::size_t>(energy_strata), 1, 1024);
   CheckCount("energy_theta", static_cast<std::size_t>(energy_theta), 2, 1024);
   CheckCount("energy_phi", static_cast<std::size_t>(energy_phi), 2, 1024);
@@ -54,7 +56,7 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
 }
 
 std::vector<double> InitialWeights(const NetworkShape& shape,
-                                   const std::vector<BrdfSample>& samples, std::uint64_t seed) {
+                                   std::span<const BrdfSample> samples, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<double> weights(shape.num_weights(), 0.0);
   for (int layer = 0; layer < shape.num_layers(); ++layer) {

@@ -47,7 +47,7 @@ class PointTerm {
   static constexpr int kRows = Term::kNumResiduals;
 
   // weight: of the mean over the samples; 0 makes it an absent term, without rows.
-  PointTerm(double weight, const FitProblem& problem, const std::vector<BrdfSample>& samples)
+  PointTerm(double weight, const FitProblem& problem, std::span<const BrdfSample> samples)
       : weight_(weight / static_cast<double>(samples.size())),
         loss_(MakeLoss(problem.loss, problem.loss_scale)) {
     residuals_.reserve(samples.size());
@@ -101,7 +101,7 @@ double AbsLogError(const LogResidual& residual, const double* z) {
 template <typename T>
 class BatchedObjective final : public Objective {
  public:
-  BatchedObjective(const FitProblem& problem, const std::vector<BrdfSample>& samples)
+  BatchedObjective(const FitProblem& problem, std::span<const BrdfSample> samples)
       : shape_(problem.Shape()),
         log_(problem.log_weight, problem, samples),
         chromaticity_(problem.chromaticity_weight, problem, samples),
@@ -244,7 +244,7 @@ class BatchedObjective final : public Objective {
 }  // namespace
 
 std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
-                                         const std::vector<BrdfSample>& samples) {
+                                         std::span<const BrdfSample> samples) {
   if (problem.precision == Precision::kDouble) {
     return std::make_unique<BatchedObjective<double>>(problem, samples);
   }

@@ -34,6 +34,22 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+// Whether a stage has come to where more samples promise more than more iterations.
+class Slowdown {
+ public:
+  // True once the least cost has fallen by less than a part of kLeastFall over kIterations.
+  bool Observe(double cost) {
+    least_.push_back(least_.empty() ? cost : std::min(cost, least_.back()));
+    if (least_.size() <= kIterations) return false;
+    return least_.back() > (1.0 - kLeastFall) * least_[least_.size() - 1 - kIterations];
+  }
+
+ private:
+  static constexpr std::size_t kIterations = 6;
+  static constexpr double kLeastFall = 0.3;
+  std::vector<double> least_;  // so far, at each iteration
+};
+
 class Fitter {
  public:
   Fitter(const Brdf& material, const FitProblem& problem, const FitOptions& options)
@@ -48,23 +64,20 @@ class Fitter {
     });
   }
 
-  // Minimises from where the last stage ended.
-  void RunStage(const FitProblem& problem) {
-    StageOptions stage;
-    stage.max_iterations = options_.max_iterations;
-    stage.function_tolerance = options_.function_tolerance;
-    stage.seconds_left = [&] { return options_.max_seconds - stopwatch_.Seconds(); };
-    if (options_.on_iteration) {
-      stage.on_iteration = [&](int iteration, double cost) { return Report(iteration, cost); };
+  // Minimises from where the last stage ended, on few samples at first and then on more and more.
+  void RunStages(const FitProblem& problem) {
+    iterations_left_ = options_.max_iterations;
+    std::size_t count = std::min(problem.first_samples, samples_.size());
+    while (true) {
+      RunStage(problem, std::span(samples_).first(count));
+      if (count == samples_.size() || iterations_left_ == 0 || !MayContinue()) return;
+      const double grown = std::ceil(problem.growth * static_cast<double>(count));
+      count = grown < static_cast<double>(samples_.size()) ? static_cast<std::size_t>(grown)
+                                                           : samples_.size();
     }
-    const StageResult result = Minimize(problem, stage);
-    summary_.final_cost = result.cost;
-    summary_.iterations += result.iterations;
-    summary_.termination = result.termination;
-    summary_.message = result.message;
   }
 
-  // Whether a further stage is allowed.
+  // Whether neither the user nor the clock has ended the fit.
   bool MayContinue() const {
     return summary_.termination != Termination::kInterrupted &&
            stopwatch_.Seconds() < options_.max_seconds;
@@ -78,13 +91,35 @@ class Fitter {
   }
 
  private:
-  StageResult Minimize(const FitProblem& problem, const StageOptions& stage) {
+  void RunStage(const FitProblem& problem, std::span<const BrdfSample> samples) {
+    Slowdown slowdown;
+    const bool last = samples.size() == samples_.size();
+    StageOptions stage;
+    stage.max_iterations = iterations_left_;
+    stage.function_tolerance = options_.function_tolerance;
+    stage.seconds_left = [&] { return options_.max_seconds - stopwatch_.Seconds(); };
+    stage.on_iteration = [&](int iteration, double cost) {
+      interrupted_ = options_.on_iteration && !Report(iteration, cost);
+      return !interrupted_ && (last || !slowdown.Observe(cost));
+    };
+    const StageResult result = Minimize(problem, samples, stage);
+    summary_.final_cost = result.cost;
+    summary_.iterations += result.iterations;
+    iterations_left_ -= result.iterations;
+    summary_.termination = result.termination == Termination::kInterrupted && !interrupted_
+                               ? Termination::kConverged
+                               : result.termination;
+    summary_.message = result.message;
+  }
+
+  StageResult Minimize(const FitProblem& problem, std::span<const BrdfSample> samples,
+                       const StageOptions& stage) {
     ceres::Problem ceres_problem;
     if (options_.jacobian == JacobianMethod::kAutodiff) {
-      AddAutodiff(problem, samples_, weights_.data(), &ceres_problem);
+      AddAutodiff(problem, samples, weights_.data(), &ceres_problem);
       return MinimizeCeresLm(&ceres_problem, stage);
     }
-    const std::unique_ptr<Objective> objective = MakeObjective(problem, samples_);
+    const std::unique_ptr<Objective> objective = MakeObjective(problem, samples);
     if (options_.solver == Solver::kTinyLm) return MinimizeTinyLm(objective.get(), stage, &weights_);
     AddCondensed(objective.get(), weights_.data(), &ceres_problem);
     return MinimizeCeresLm(&ceres_problem, stage);
@@ -108,6 +143,8 @@ class Fitter {
   std::vector<double> weights_;
   std::unique_ptr<Objective> heldout_;
   FitSummary summary_;
+  int iterations_left_ = 0;
+  bool interrupted_ = false;
 };
 
 // The energy term waits until the rest is fitted: from random weights its square outweighs all else
@@ -116,10 +153,10 @@ Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& opt
   Fitter fitter(material, problem, options);
   FitProblem without_energy = problem;
   without_energy.energy_weight = 0.0;
-  fitter.RunStage(without_energy);
+  fitter.RunStages(without_energy);
   const bool gains_energy = problem.energy_weight > 0.0 &&
                             EnergyStrata<double>(problem).Cost(fitter.weights().data()) > 0.0;
-  if (gains_energy && fitter.MayContinue()) fitter.RunStage(problem);
+  if (gains_energy && fitter.MayContinue()) fitter.RunStages(problem);
   FitSummary summary = fitter.Finish();
   summary.energy_stage = gains_energy;
   return {NeuralBrdf(problem.Shape(), fitter.weights()), summary};

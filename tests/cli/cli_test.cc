@@ -131,8 +131,9 @@ TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
 TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
   const std::string material = "--material=builtin:satin-gold";
   const Result fit = Run("fit " + material + kQuick + "--seed=7 --out=" + Path("a.safetensors") +
-                         " --summary=" + Path("a.json"));
+                         " --summary=" + Path("a.json") + " --trace=" + Path("a.csv"));
   ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(ReadFile(Path("a.csv"), 1 << 20), StartsWith("iteration,seconds,cost,heldout_error\n0,"));
   EXPECT_EQ(fit.err, "");
   EXPECT_THAT(fit.out, HasSubstr("mean_abs_log_error"));
   const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));

@@ -126,6 +126,22 @@ TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
   }
 }
 
+TEST(FitBrdf, GrowingSamplesReachTheErrorOfAllAtOnce) {
+  FitProblem problem;
+  problem.hidden = {8, 8};
+  problem.samples = 4000;
+  problem.energy_weight = 0.0;
+  FitOptions options;
+  options.max_iterations = 100;
+  const auto gold = MakeBuiltin("satin-gold");
+  problem.first_samples = problem.samples;
+  const Fit all = FitBrdf(*gold, problem, options);
+  problem.first_samples = 300;
+  const Fit grown = FitBrdf(*gold, problem, options);
+  EXPECT_LT(MeanAbsDifference(*gold, grown.network), 2.0 * MeanAbsDifference(*gold, all.network));
+  EXPECT_LE(grown.summary.iterations, 100);
+}
+
 TEST(FitBrdf, StopsWhenAskedAndKeepsTheBest) {
   FitOptions options;
   double last_cost = 0.0;

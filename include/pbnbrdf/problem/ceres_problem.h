@@ -3,6 +3,8 @@
 
 #include <ceres/problem.h>
 
+#include <span>
+
 #include "pbnbrdf/problem/objective.h"
 
 namespace pbnbrdf {
@@ -19,7 +21,7 @@ inline constexpr NameTable<JacobianMethod, 2> kJacobianMethods = {
 // `ceres_problem`.
 void AddCondensed(Objective* objective, double* weights, ceres::Problem* ceres_problem);
 
-void AddAutodiff(const FitProblem& problem, const std::vector<BrdfSample>& samples,
+void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples,
                  double* weights, ceres::Problem* ceres_problem);
 
 }  // namespace pbnbrdf

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pbnbrdf/base/names.h"
@@ -48,9 +49,12 @@ struct FitProblem {
   Loss loss = Loss::kSoftL1;
   double loss_scale = 0.001;  // > 0, in units of the residuals: where rho turns from square to linear
 
-  // The training samples.
+  // The training samples. A fit starts on the first few of them and takes `growth` times as many each
+  // time that the cost falls slowly, up to all.
   Sampling sampling = Sampling::kHighlight;
   std::size_t samples = 10000;
+  std::size_t first_samples = 1000;
+  double growth = 3.0;  // > 1
   std::uint64_t seed = 1;  // of the samples and of the initial weights
 
   // The energy term's quadrature: strata of incident angles, equal in solid angle, and nodes for each.
@@ -72,6 +76,6 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale);
 // Uniform (Glorot and Bengio 2010); the last layer's biases are the mean of log(1 + f) over the
 // samples. shape.num_weights() numbers.
 std::vector<double> InitialWeights(const NetworkShape& shape,
-                                   const std::vector<BrdfSample>& samples, std::uint64_t seed);
+                                   std::span<const BrdfSample> samples, std::uint64_t seed);
 
 }  // namespace pbnbrdf

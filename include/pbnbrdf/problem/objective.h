@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pbnbrdf/brdf/sampling.h"
@@ -33,6 +34,6 @@ class Objective {
 // `problem` must be valid. Work is shared among the threads that TBB grants; the result doesn't
 // depend on their number.
 std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
-                                         const std::vector<BrdfSample>& samples);
+                                         std::span<const BrdfSample> samples);
 
 }  // namespace pbnbrdf

@@ -33,7 +33,7 @@ inline constexpr NameTable<Solver, 2> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
 struct FitOptions {
   Solver solver = Solver::kTinyLm;
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
-  int max_iterations = 150;          // >= 0, of each stage: without the energy term, then with it
+  int max_iterations = 150;          // >= 0, without the energy term, and again with it
   double max_seconds = 3600.0;       // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
   int threads = 0;                   // 0: as many as the machine has
@@ -58,7 +58,7 @@ struct Fit {
   FitSummary summary;
 };
 
-// The same arguments give the same network to the last bit, whatever the number of threads. The energy
+// The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the same network to the last bit, whatever the number of threads. The energy
 // term joins in a second stage, if the directional albedo of the first stage's network exceeds 1 in a
 // stratum. Throws Error if the problem or the options are invalid, the material has next to no data,
 // or the solver finds no usable step.
