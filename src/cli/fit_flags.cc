@@ -26,7 +26,7 @@ DEFINE_uint64(first_samples, 1000, "samples to start with; --samples or more: al
 DEFINE_double(growth, 3.0, "factor of samples each time that the cost falls slowly");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
-DEFINE_string(solver, "tiny_lm", "Levenberg-Marquardt: tiny_lm | lm, Ceres' own, slower");
+DEFINE_string(solver, "tiny_lm", "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres'");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, always with lm");
 DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");

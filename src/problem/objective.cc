@@ -11,6 +11,7 @@
 #include "pbnbrdf/network/encoded_batches.h"
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/problem/normal_equations.h"
+#include "pbnbrdf/problem/weight_gradient.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
 #include "pbnbrdf/residuals/log_residual.h"
 
@@ -121,6 +122,35 @@ class BatchedObjective final : public Objective {
            }) + energy_.Cost(w.data());
   }
 
+  bool Gradient(const double* weights, double* cost, double* gradient) override {
+    const AlignedVector<T> w = Converted(weights);
+    const std::size_t partitions = PartitionCount(inputs_.num_batches());
+    while (gradient_workers_.size() < partitions) {
+      gradient_workers_.push_back(std::make_unique<GradientWorker>(shape_));
+    }
+    tbb::parallel_for(std::size_t{0}, partitions, [&](std::size_t p) {
+      GradientWorker& worker = *gradient_workers_[p];
+      worker.cost = 0.0;
+      worker.sum.Clear();
+      for (std::size_t b = p; b < inputs_.num_batches(); b += partitions) {
+        AddGradientOfBatch(w.data(), b, &worker);
+      }
+    });
+    Linearization energy;
+    energy.gradient.assign(shape_.num_weights(), 0.0);
+    energy.hessian.assign(energy_.empty() ? 0 : energy.gradient.size() * energy.gradient.size(), 0.0);
+    if (!energy_.empty()) energy_.Linearize(w.data(), &energy);
+    *cost = energy.cost;
+    std::copy(energy.gradient.begin(), energy.gradient.end(), gradient);
+    for (std::size_t p = 0; p < partitions; ++p) {
+      *cost += gradient_workers_[p]->cost;
+      gradient_workers_[p]->sum.AddTo(gradient);
+    }
+    double sum = *cost;
+    for (int i = 0; i < shape_.num_weights(); ++i) sum += 0.0 * gradient[i];
+    return std::isfinite(sum);
+  }
+
   double MeanAbsLogError(const double* weights) override {
     const double sum = Sum(Converted(weights), [&](std::size_t sample, const double* z) {
       return AbsLogError(log_.residual(sample), z);
@@ -161,6 +191,14 @@ class BatchedObjective final : public Objective {
     BatchedMlp<T> mlp;
     AlignedVector<T> residuals;  // row after row
     NormalEquations<T> sums;
+    double cost = 0.0;
+  };
+
+  // For J'r the rows of a sample are summed, times their residuals, before they go backward.
+  struct GradientWorker {
+    explicit GradientWorker(const NetworkShape& shape) : mlp(shape, 1), sum(shape) {}
+    BatchedMlp<T> mlp;
+    WeightGradient<T> sum;
     double cost = 0.0;
   };
 
@@ -216,6 +254,27 @@ class BatchedObjective final : public Objective {
     worker->sums.AddBatch(mlp, worker->residuals.data());
   }
 
+  void AddGradientOfBatch(const T* w, std::size_t b, GradientWorker* worker) const {
+    BatchedMlp<T>& mlp = worker->mlp;
+    mlp.Forward(w, inputs_.batch(b));
+    T* to = mlp.output_gradient(0);
+    std::fill(to, to + kChannels * kBatch, T(0));
+    for (int n = 0; n < inputs_.batch_size(b); ++n) {
+      double z[kChannels], sum[kChannels] = {};
+      LoadOutput(mlp.output(), n, z);
+      const auto add = [&](int, double residual, const double* gradient) {
+        for (int c = 0; c < kChannels; ++c) sum[c] += residual * gradient[c];
+      };
+      worker->cost += log_.Linearize(b * kBatch + n, z, add);
+      worker->cost += chromaticity_.Linearize(b * kBatch + n, z, add);
+      for (int c = 0; c < kChannels; ++c) to[c * kBatch + n] = static_cast<T>(sum[c]);
+    }
+    mlp.Backward(w);
+    for (int l = 0; l < shape_.num_layers(); ++l) {
+      worker->sum.AddBatch(mlp, l, mlp.delta(l), kernels::Padded(shape_.out(l)));
+    }
+  }
+
   // So that the places behind the last sample of a batch add nothing.
   static void ClearRows(Worker* worker) {
     std::fill(worker->residuals.begin(), worker->residuals.end(), T(0));
@@ -239,6 +298,7 @@ class BatchedObjective final : public Objective {
   PointTerm<ChromaticityResidual> chromaticity_;
   EnergyStrata<T> energy_;
   std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<std::unique_ptr<GradientWorker>> gradient_workers_;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/problem/energy_strata.h"
-#include "pbnbrdf/solve/ceres_lm.h"
+#include "pbnbrdf/solve/ceres_solvers.h"
 #include "pbnbrdf/solve/tiny_lm.h"
 
 namespace pbnbrdf {
@@ -120,7 +120,11 @@ class Fitter {
       return MinimizeCeresLm(&ceres_problem, stage);
     }
     const std::unique_ptr<Objective> objective = MakeObjective(problem, samples);
-    if (options_.solver == Solver::kTinyLm) return MinimizeTinyLm(objective.get(), stage, &weights_);
+    switch (options_.solver) {
+      case Solver::kTinyLm: return MinimizeTinyLm(objective.get(), stage, &weights_);
+      case Solver::kLbfgs: return MinimizeCeresLbfgs(objective.get(), stage, &weights_);
+      case Solver::kLm: break;
+    }
     AddCondensed(objective.get(), weights_.data(), &ceres_problem);
     return MinimizeCeresLm(&ceres_problem, stage);
   }

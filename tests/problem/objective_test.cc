@@ -179,6 +179,19 @@ TEST_P(ObjectiveTest, SameBitsForOneAndTwoThreads) {
   EXPECT_EQ(one.hessian, two.hessian);
 }
 
+TEST_P(ObjectiveTest, GradientAloneIsTheSame) {
+  FitProblem problem = GetParam().problem;
+  problem.precision = Precision::kDouble;
+  const auto objective = MakeObjective(problem, Samples(problem));
+  const double* weights = GetParam().weights.data();
+  Linearization at;
+  ASSERT_TRUE(objective->Linearize(weights, &at));
+  Linearization alone = at;
+  ASSERT_TRUE(objective->Gradient(weights, &alone.cost, alone.gradient.data()));
+  EXPECT_LE(Compare(alone, at).cost, 1e-12);
+  EXPECT_LE(Compare(alone, at).gradient, 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Cases, ObjectiveTest, testing::ValuesIn(Cases()),
                          [](const auto& test) { return test.param.name; });
 

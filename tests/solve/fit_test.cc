@@ -108,6 +108,22 @@ TEST(FitBrdf, TinyLmTakesTheStepsOfCeres) {
   }
 }
 
+TEST(FitBrdf, LbfgsComesNearToo) {
+  FitProblem problem = SmallProblem();
+  problem.precision = Precision::kDouble;
+  problem.loss = Loss::kL2;
+  FitOptions options;
+  options.solver = Solver::kLbfgs;
+  options.max_iterations = 1000;
+  options.function_tolerance = 1e-9;
+  const auto gold = MakeBuiltin("satin-gold");
+  const Fit fit = FitBrdf(*gold, problem, options);
+  options.max_iterations = 0;
+  const Fit start = FitBrdf(*gold, problem, options);
+  EXPECT_EQ(start.summary.iterations, 0);
+  EXPECT_LT(MeanAbsDifference(*gold, fit.network), 0.05 * MeanAbsDifference(*gold, start.network));
+}
+
 TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
   // Half a sphere of white: brighter than anything physical, so the term must act.
   const NetworkShape shape(Encoding::kMultiscale, {2}, Activation::kTanh);

@@ -24,6 +24,9 @@ class Objective {
   // False, with `at` unspecified, if the cost or a derivative isn't finite.
   virtual bool Linearize(const double* weights, Linearization* at) = 0;
 
+  // The cost and its gradient (J'r, P) alone. False, with both unspecified, if they aren't finite.
+  virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;
+
   // About the largest error of hessian, relative to its diagonal, that rounding makes.
   virtual double HessianRounding() const = 0;
 

@@ -25,10 +25,12 @@ struct FitProgress {
 
 enum class Solver {
   kTinyLm,  // Levenberg-Marquardt on the normal equations (tiny_lm.h)
-  kLm,      // Ceres' Levenberg-Marquardt (ceres_lm.h): the same steps, at several times the cost
+  kLm,      // Ceres' Levenberg-Marquardt (ceres_solvers.h): the same steps, at several times the cost
+  kLbfgs,   // Ceres' L-BFGS: cheap iterations, but thousands of them
 };
 
-inline constexpr NameTable<Solver, 2> kSolvers = {{{"tiny_lm", Solver::kTinyLm}, {"lm", Solver::kLm}}};
+inline constexpr NameTable<Solver, 3> kSolvers = {
+    {{"tiny_lm", Solver::kTinyLm}, {"lm", Solver::kLm}, {"lbfgs", Solver::kLbfgs}}};
 
 struct FitOptions {
   Solver solver = Solver::kTinyLm;

@@ -1,0 +1,18 @@
+// ceres_solvers.h: Ceres' own minimisers: Levenberg-Marquardt and L-BFGS.
+#pragma once
+
+#include "pbnbrdf/problem/ceres_problem.h"
+#include "pbnbrdf/solve/stage.h"
+
+namespace pbnbrdf {
+
+// Levenberg-Marquardt (trust region). `problem`'s parameter blocks lie in a vector of weights that is the
+// caller's: where to start, and on return and in callbacks the best found. Throws Error if Ceres finds no
+// usable step.
+StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options);
+
+// L-BFGS with line search. weights: as above.
+StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options,
+                               std::vector<double>* weights);
+
+}  // namespace pbnbrdf

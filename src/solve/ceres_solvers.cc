@@ -1,0 +1,113 @@
+#include "pbnbrdf/solve/ceres_solvers.h"
+
+#include <ceres/first_order_function.h>
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr int kMostInvalidSteps = 20;
+constexpr int kLbfgsRank = 30;
+
+class IterationCallback final : public ceres::IterationCallback {
+ public:
+  explicit IterationCallback(const StageOptions& options) : options_(options) {}
+
+  bool interrupted() const { return interrupted_; }
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    interrupted_ = options_.on_iteration && !options_.on_iteration(summary.iteration, summary.cost);
+    return interrupted_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const StageOptions& options_;
+  bool interrupted_ = false;
+};
+
+// What the options of both solvers have in common.
+template <typename CeresOptions>
+CeresOptions CommonOptions(const StageOptions& options, ceres::IterationCallback* callback) {
+  CeresOptions ceres_options;
+  ceres_options.logging_type = ceres::SILENT;
+  ceres_options.max_num_iterations = options.max_iterations;
+  if (options.seconds_left) {
+    ceres_options.max_solver_time_in_seconds = std::max(options.seconds_left(), 0.0);
+  }
+  ceres_options.function_tolerance = options.function_tolerance;
+  ceres_options.parameter_tolerance = 0.0;
+  ceres_options.gradient_tolerance = 0.0;  // costs are tiny: the relative change decides
+  ceres_options.update_state_every_iteration = true;
+  ceres_options.callbacks.push_back(callback);
+  return ceres_options;
+}
+
+template <typename CeresSummary>
+StageResult ReadSummary(const CeresSummary& summary, const StageOptions& options,
+                        bool interrupted) {
+  if (!summary.IsSolutionUsable()) Fail("the solver failed: ", summary.message);
+  StageResult result;
+  result.cost = summary.final_cost;
+  result.iterations = std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
+  result.message = summary.message;
+  if (interrupted) {
+    result.termination = Termination::kInterrupted;
+  } else if (summary.termination_type == ceres::CONVERGENCE) {
+    result.termination = Termination::kConverged;
+  } else {
+    result.termination = result.iterations >= options.max_iterations ? Termination::kMaxIterations
+                                                                     : Termination::kMaxSeconds;
+  }
+  return result;
+}
+
+// The cost and its gradient as a function of all weights.
+class CostAndGradient final : public ceres::FirstOrderFunction {
+ public:
+  explicit CostAndGradient(Objective* objective) : objective_(objective) {}
+
+  int NumParameters() const override { return objective_->shape().num_weights(); }
+
+  bool Evaluate(const double* weights, double* cost, double* gradient) const override {
+    if (gradient != nullptr) return objective_->Gradient(weights, cost, gradient);
+    *cost = objective_->Cost(weights);
+    return std::isfinite(*cost);
+  }
+
+ private:
+  Objective* objective_;
+};
+
+}  // namespace
+
+StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options) {
+  IterationCallback callback(options);
+  auto ceres_options = CommonOptions<ceres::Solver::Options>(options, &callback);
+  ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  ceres_options.use_nonmonotonic_steps = true;  // halves the iterations; the best weights are kept
+  ceres_options.max_num_consecutive_invalid_steps = kMostInvalidSteps;
+  ceres_options.num_threads = 1;  // one block, whose threads are its own
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options, problem, &summary);
+  return ReadSummary(summary, options, callback.interrupted());
+}
+
+StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options,
+                               std::vector<double>* weights) {
+  IterationCallback callback(options);
+  auto ceres_options = CommonOptions<ceres::GradientProblemSolver::Options>(options, &callback);
+  ceres_options.max_lbfgs_rank = kLbfgsRank;
+  const ceres::GradientProblem problem(new CostAndGradient(objective));
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(ceres_options, problem, weights->data(), &summary);
+  return ReadSummary(summary, options, callback.interrupted());
+}
+
+}  // namespace pbnbrdf
