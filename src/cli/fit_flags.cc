@@ -26,10 +26,12 @@ DEFINE_uint64(first_samples, 1000, "samples to start with; --samples or more: al
 DEFINE_double(growth, 3.0, "factor of samples each time that the cost falls slowly");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
-DEFINE_string(solver, "tiny_lm", "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres'");
+DEFINE_string(solver, "tiny_lm", "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres' | adam");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, always with lm");
-DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations");
+DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations (adam: epochs)");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
+DEFINE_uint64(batch, 512, "adam: samples a step");
+DEFINE_double(learning_rate, 5e-4, "adam: step size");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
 
 namespace pbnbrdf::cli {
@@ -96,6 +98,8 @@ FitOptions ParseOptions() {
   options.max_iterations = FLAGS_max_iterations;
   options.max_seconds = FLAGS_max_seconds;
   options.function_tolerance = FLAGS_function_tolerance;
+  options.adam.batch = FLAGS_batch;
+  options.adam.learning_rate = FLAGS_learning_rate;
   options.threads = FLAGS_threads;
   options.Validate();
   return options;
@@ -110,7 +114,8 @@ std::vector<FlagGroup> ProblemFlags() {
             "energy_theta", "energy_phi", "loss", "loss_scale"}},
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
-           {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance"}}};
+           {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance", "batch",
+            "learning_rate"}}};
 }
 
 FitProblem ProblemFromFlags() { return AsUsage(ParseProblem); }

@@ -23,21 +23,19 @@ Cholesky::Cholesky(int size)
 bool Cholesky::Factor() {
   for (int begin = 0; begin < size_; begin += kBlock) {
     const int end = std::min(begin + kBlock, size_), width = end - begin;
-    kernels::SubtractRowProducts(row(begin), size_ - begin, stride_, row(begin), width, stride_,
-                                 begin, row(begin) + begin, stride_);
+    kernels::AddRowProducts(-1.0, row(begin), size_ - begin, stride_, row(begin), width, stride_,
+                            begin, row(begin) + begin, stride_);
     if (!FactorBlock(begin, end)) return false;
-    // Below the block: X L_b' = A_b, that is X = -(0 - A_b (L_b^-1)').
+    // Below the block, X L_b' = A_b, that is X = A_b (L_b^-1)'.
     const int below = size_ - end;
+    if (below == 0) break;
     for (int i = 0; i < below; ++i) {
       double* from = row(end + i) + begin;
       std::copy(from, from + width, panel_.data() + i * kBlock);
       std::fill(from, from + width, 0.0);
     }
-    kernels::SubtractRowProducts(panel_.data(), below, kBlock, inverse_.data(), width, kBlock, width,
-                                 row(std::min(end, size_ - 1)) + begin, stride_);
-    for (int i = end; i < size_; ++i) {
-      for (int j = begin; j < end; ++j) row(i)[j] = -row(i)[j];
-    }
+    kernels::AddRowProducts(1.0, panel_.data(), below, kBlock, inverse_.data(), width, kBlock, width,
+                            row(end) + begin, stride_);
   }
   return true;
 }
@@ -70,7 +68,7 @@ bool Cholesky::FactorBlock(int begin, int end) {
 
 void Cholesky::SolveLower(double* b) const {
   for (int i = 0; i < size_; ++i) {
-    kernels::SubtractRowProducts(b, 1, size_, row(i), 1, stride_, i, b + i, 1);
+    kernels::AddRowProducts(-1.0, b, 1, size_, row(i), 1, stride_, i, b + i, 1);
     b[i] /= row(i)[i];
   }
 }

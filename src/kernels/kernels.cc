@@ -70,6 +70,14 @@ HWY_INLINE void TanhAll(T* x, std::size_t count) {
 }
 
 template <typename T>
+HWY_INLINE void ExpAll(T* x, std::size_t count) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    hn::StoreU(hn::Exp(d, hn::LoadU(d, x + i)), d, x + i);
+  }
+}
+
+template <typename T>
 HWY_INLINE void PairProductsOf(const T* a, int na, const T* b, int nb, int rows, bool symmetric,
                                T* out, int out_stride) {
   const hn::ScalableTag<T> d;
@@ -142,10 +150,10 @@ HWY_INLINE void AddProduct(const T* x, int p, int x_stride, const T* y, int q, i
 }
 
 // kX x kY entries of c, each a dot product along rows.
-template <int kX, int kY>
-HWY_INLINE void RowProductBlock(const double* x, int x_stride, const double* y, int y_stride,
-                                int size, double* c, int c_stride) {
-  const hn::ScalableTag<double> d;
+template <int kX, int kY, typename T>
+HWY_INLINE void RowProductBlock(T alpha, const T* x, int x_stride, const T* y, int y_stride,
+                                int size, T* c, int c_stride) {
+  const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   hn::Vec<decltype(d)> sum[kX][kY];
   for (auto& row : sum) {
@@ -162,35 +170,36 @@ HWY_INLINE void RowProductBlock(const double* x, int x_stride, const double* y, 
   }
   for (int i = 0; i < kX; ++i) {
     for (int j = 0; j < kY; ++j) {
-      double total = hn::GetLane(hn::SumOfLanes(d, sum[i][j]));
+      T total = hn::GetLane(hn::SumOfLanes(d, sum[i][j]));
       for (int rest = k; rest < size; ++rest) total += x[i * x_stride + rest] * y[j * y_stride + rest];
-      c[i * c_stride + j] -= total;
+      c[i * c_stride + j] += alpha * total;
     }
   }
 }
 
-template <int kX>
-HWY_INLINE void RowProductBlocks(const double* x, int x_stride, const double* y, int rows_y,
-                                 int y_stride, int size, double* c, int c_stride) {
+template <int kX, typename T>
+HWY_INLINE void RowProductBlocks(T alpha, const T* x, int x_stride, const T* y, int rows_y,
+                                 int y_stride, int size, T* c, int c_stride) {
   int j = 0;
   for (; j + 4 <= rows_y; j += 4) {
-    RowProductBlock<kX, 4>(x, x_stride, y + j * y_stride, y_stride, size, c + j, c_stride);
+    RowProductBlock<kX, 4>(alpha, x, x_stride, y + j * y_stride, y_stride, size, c + j, c_stride);
   }
   for (; j < rows_y; ++j) {
-    RowProductBlock<kX, 1>(x, x_stride, y + j * y_stride, y_stride, size, c + j, c_stride);
+    RowProductBlock<kX, 1>(alpha, x, x_stride, y + j * y_stride, y_stride, size, c + j, c_stride);
   }
 }
 
-void SubtractRowProductsD(const double* x, int rows_x, int x_stride, const double* y, int rows_y,
-                          int y_stride, int size, double* c, int c_stride) {
+template <typename T>
+HWY_INLINE void AddAllRowProducts(T alpha, const T* x, int rows_x, int x_stride, const T* y,
+                                  int rows_y, int y_stride, int size, T* c, int c_stride) {
   int i = 0;
   for (; i + kRowProductRows <= rows_x; i += kRowProductRows) {
-    RowProductBlocks<kRowProductRows>(x + i * x_stride, x_stride, y, rows_y, y_stride, size,
+    RowProductBlocks<kRowProductRows>(alpha, x + i * x_stride, x_stride, y, rows_y, y_stride, size,
                                       c + i * c_stride, c_stride);
   }
   for (; i < rows_x; ++i) {
-    RowProductBlocks<1>(x + i * x_stride, x_stride, y, rows_y, y_stride, size, c + i * c_stride,
-                        c_stride);
+    RowProductBlocks<1>(alpha, x + i * x_stride, x_stride, y, rows_y, y_stride, size,
+                        c + i * c_stride, c_stride);
   }
 }
 
@@ -203,6 +212,11 @@ void SubtractRowProductsD(const double* x, int rows_x, int x_stride, const doubl
     DenseBlocks<false>(layer, 1, in + 1, in, out, y, x);                                        \
   }                                                                                             \
   void Tanh##Suffix(T* x, std::size_t count) { TanhAll(x, count); }                             \
+  void Exp##Suffix(T* x, std::size_t count) { ExpAll(x, count); }                               \
+  void AddRowProducts##Suffix(T alpha, const T* x, int rows_x, int x_stride, const T* y,        \
+                              int rows_y, int y_stride, int size, T* c, int c_stride) {         \
+    AddAllRowProducts(alpha, x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);      \
+  }                                                                                             \
   void PairProducts##Suffix(const T* a, int na, const T* b, int nb, int rows, bool symmetric,   \
                             T* out, int out_stride) {                                           \
     PairProductsOf(a, na, b, nb, rows, symmetric, out, out_stride);                             \
@@ -232,6 +246,8 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   HWY_EXPORT(Dense##Suffix);                                                                    \
   HWY_EXPORT(DenseTransposed##Suffix);                                                          \
   HWY_EXPORT(Tanh##Suffix);                                                                     \
+  HWY_EXPORT(Exp##Suffix);                                                                      \
+  HWY_EXPORT(AddRowProducts##Suffix);                                                           \
   HWY_EXPORT(PairProducts##Suffix);                                                             \
   HWY_EXPORT(AddTransposedProduct##Suffix);                                                     \
   template <>                                                                                   \
@@ -247,6 +263,16 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
     HWY_DYNAMIC_DISPATCH(Tanh##Suffix)(x, count);                                               \
   }                                                                                             \
   template <>                                                                                   \
+  void Exp(T* x, std::size_t count) {                                                           \
+    HWY_DYNAMIC_DISPATCH(Exp##Suffix)(x, count);                                                \
+  }                                                                                             \
+  template <>                                                                                   \
+  void AddRowProducts(T alpha, const T* x, int rows_x, int x_stride, const T* y, int rows_y,    \
+                      int y_stride, int size, T* c, int c_stride) {                             \
+    HWY_DYNAMIC_DISPATCH(AddRowProducts##Suffix)                                                \
+    (alpha, x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);                       \
+  }                                                                                             \
+  template <>                                                                                   \
   void PairProducts(const T* a, int na, const T* b, int nb, int rows, bool symmetric, T* out,   \
                     int out_stride) {                                                           \
     HWY_DYNAMIC_DISPATCH(PairProducts##Suffix)(a, na, b, nb, rows, symmetric, out, out_stride); \
@@ -260,13 +286,6 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
 PBNBRDF_DISPATCH(float, F)
 PBNBRDF_DISPATCH(double, D)
 #undef PBNBRDF_DISPATCH
-
-HWY_EXPORT(SubtractRowProductsD);
-void SubtractRowProducts(const double* x, int rows_x, int x_stride, const double* y, int rows_y,
-                         int y_stride, int size, double* c, int c_stride) {
-  HWY_DYNAMIC_DISPATCH(SubtractRowProductsD)
-  (x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);
-}
 
 }  // namespace pbnbrdf::kernels
 #endif  // HWY_ONCE

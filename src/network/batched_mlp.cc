@@ -25,7 +25,7 @@ void MultiplySlopes(Activation activation, const T* y, std::size_t count, T* del
 
 // to[n * stride + i] = from[i * kBatch + n], in tiles that stay in the cache.
 template <typename T>
-void Transpose(const T* from, int size, T* to, int stride) {
+void TransposeMatrix(const T* from, int size, T* to, int stride) {
   constexpr int kTile = 16;
   for (int first = 0; first < kBatch; first += kTile) {
     for (int i = 0; i < size; ++i) {
@@ -37,7 +37,8 @@ void Transpose(const T* from, int size, T* to, int stride) {
 }  // namespace
 
 template <typename T>
-BatchedMlp<T>::BatchedMlp(const NetworkShape& shape, int rows) : shape_(shape), rows_(rows) {
+BatchedMlp<T>::BatchedMlp(const NetworkShape& shape, int rows)
+    : shape_(shape), rows_(rows), ones_(rows > 0 ? kBatch : 0, T(1)) {
   for (int layer = 0; layer < shape.num_layers(); ++layer) {
     const int in = shape.in(layer), out = shape.out(layer);
     activations_.emplace_back(out * kBatch);
@@ -67,7 +68,6 @@ void BatchedMlp<T>::Forward(const T* weights, const T* input) {
 template <typename T>
 void BatchedMlp<T>::Backward(const T* weights) {
   for (int row = 0; row < rows_; ++row) BackwardRow(weights, row);
-  TransposeAll();
 }
 
 template <typename T>
@@ -82,13 +82,26 @@ void BatchedMlp<T>::BackwardRow(const T* weights, int row) {
 }
 
 template <typename T>
-void BatchedMlp<T>::TransposeAll() {
+void BatchedMlp<T>::AddWeightGradient(T scale, T* gradient) const {
+  for (int layer = 0; layer < shape_.num_layers(); ++layer) {
+    const int in = shape_.in(layer), out = shape_.out(layer);
+    const T* input = layer == 0 ? input_ : activations_[layer - 1].data();
+    const T* delta = deltas_[layer].data();
+    T* to = gradient + shape_.offset(layer);
+    kernels::AddRowProducts(scale, delta, out, kBatch, input, in, kBatch, kBatch, to, in + 1);
+    kernels::AddRowProducts(scale, delta, out, kBatch, ones_.data(), 1, kBatch, kBatch, to + in,
+                            in + 1);
+  }
+}
+
+template <typename T>
+void BatchedMlp<T>::Transpose() {
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
     const int in = shape_.in(layer), out = shape_.out(layer), padded = kernels::Padded(out);
-    Transpose(layer == 0 ? input_ : activations_[layer - 1].data(), in,
+    TransposeMatrix(layer == 0 ? input_ : activations_[layer - 1].data(), in,
               inputs_by_sample_[layer].data(), kernels::Padded(in + 1));
     for (int row = 0; row < rows_; ++row) {
-      Transpose(deltas_[layer].data() + row * out * kBatch, out,
+      TransposeMatrix(deltas_[layer].data() + row * out * kBatch, out,
                 deltas_by_sample_[layer].data() + row * padded, rows_ * padded);
     }
   }

@@ -117,6 +117,7 @@ void EnergyStrata<T>::AlbedoGradients(const T* weights, const Stratum& stratum,
       }
     }
     mlp.Backward(weights);
+    mlp.Transpose();
     for (int l = 0; l < shape_.num_layers(); ++l) {
       const int stride = kernels::Padded(shape_.out(l));
       for (int c = 0; c < kChannels; ++c) {

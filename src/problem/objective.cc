@@ -11,7 +11,6 @@
 #include "pbnbrdf/network/encoded_batches.h"
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/problem/normal_equations.h"
-#include "pbnbrdf/problem/weight_gradient.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
 #include "pbnbrdf/residuals/log_residual.h"
 
@@ -131,7 +130,7 @@ class BatchedObjective final : public Objective {
     tbb::parallel_for(std::size_t{0}, partitions, [&](std::size_t p) {
       GradientWorker& worker = *gradient_workers_[p];
       worker.cost = 0.0;
-      worker.sum.Clear();
+      std::fill(worker.sum.begin(), worker.sum.end(), 0.0);
       for (std::size_t b = p; b < inputs_.num_batches(); b += partitions) {
         AddGradientOfBatch(w.data(), b, &worker);
       }
@@ -144,7 +143,7 @@ class BatchedObjective final : public Objective {
     std::copy(energy.gradient.begin(), energy.gradient.end(), gradient);
     for (std::size_t p = 0; p < partitions; ++p) {
       *cost += gradient_workers_[p]->cost;
-      gradient_workers_[p]->sum.AddTo(gradient);
+      for (int i = 0; i < shape_.num_weights(); ++i) gradient[i] += gradient_workers_[p]->sum[i];
     }
     double sum = *cost;
     for (int i = 0; i < shape_.num_weights(); ++i) sum += 0.0 * gradient[i];
@@ -196,9 +195,11 @@ class BatchedObjective final : public Objective {
 
   // For J'r the rows of a sample are summed, times their residuals, before they go backward.
   struct GradientWorker {
-    explicit GradientWorker(const NetworkShape& shape) : mlp(shape, 1), sum(shape) {}
+    explicit GradientWorker(const NetworkShape& shape)
+        : mlp(shape, 1), batch_sum(shape.num_weights()), sum(shape.num_weights()) {}
     BatchedMlp<T> mlp;
-    WeightGradient<T> sum;
+    AlignedVector<T> batch_sum;
+    std::vector<double> sum;
     double cost = 0.0;
   };
 
@@ -251,6 +252,7 @@ class BatchedObjective final : public Objective {
       worker->cost += chromaticity_.Linearize(sample, z, set_from(log_.rows()));
     }
     mlp.Backward(w);
+    mlp.Transpose();
     worker->sums.AddBatch(mlp, worker->residuals.data());
   }
 
@@ -270,9 +272,9 @@ class BatchedObjective final : public Objective {
       for (int c = 0; c < kChannels; ++c) to[c * kBatch + n] = static_cast<T>(sum[c]);
     }
     mlp.Backward(w);
-    for (int l = 0; l < shape_.num_layers(); ++l) {
-      worker->sum.AddBatch(mlp, l, mlp.delta(l), kernels::Padded(shape_.out(l)));
-    }
+    std::fill(worker->batch_sum.begin(), worker->batch_sum.end(), T(0));
+    mlp.AddWeightGradient(T(1), worker->batch_sum.data());
+    for (std::size_t i = 0; i < worker->sum.size(); ++i) worker->sum[i] += worker->batch_sum[i];
   }
 
   // So that the places behind the last sample of a batch add nothing.

@@ -7,6 +7,7 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/problem/energy_strata.h"
+#include "pbnbrdf/solve/adam.h"
 #include "pbnbrdf/solve/ceres_solvers.h"
 #include "pbnbrdf/solve/tiny_lm.h"
 
@@ -68,6 +69,7 @@ class Fitter {
   void RunStages(const FitProblem& problem) {
     iterations_left_ = options_.max_iterations;
     std::size_t count = std::min(problem.first_samples, samples_.size());
+    if (options_.solver == Solver::kAdam) count = samples_.size();  // it draws its own few
     while (true) {
       RunStage(problem, std::span(samples_).first(count));
       if (count == samples_.size() || iterations_left_ == 0 || !MayContinue()) return;
@@ -119,11 +121,15 @@ class Fitter {
       AddAutodiff(problem, samples, weights_.data(), &ceres_problem);
       return MinimizeCeresLm(&ceres_problem, stage);
     }
+    if (options_.solver == Solver::kAdam) {
+      return MinimizeAdam(problem, samples, options_.adam, stage, &weights_);
+    }
     const std::unique_ptr<Objective> objective = MakeObjective(problem, samples);
     switch (options_.solver) {
       case Solver::kTinyLm: return MinimizeTinyLm(objective.get(), stage, &weights_);
       case Solver::kLbfgs: return MinimizeCeresLbfgs(objective.get(), stage, &weights_);
-      case Solver::kLm: break;
+      case Solver::kLm:
+      case Solver::kAdam: break;
     }
     AddCondensed(objective.get(), weights_.data(), &ceres_problem);
     return MinimizeCeresLm(&ceres_problem, stage);
@@ -174,12 +180,16 @@ void FitOptions::Validate() const {
   if (!(function_tolerance >= 0.0)) {
     Fail("function_tolerance = ", function_tolerance, "; must be >= 0");
   }
+  adam.Validate();
   if (threads < 0) Fail("threads = ", threads, "; must be >= 0");
 }
 
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   problem.Validate();
   options.Validate();
+  if (options.solver == Solver::kAdam && problem.energy_weight > 0.0) {
+    Fail("terms: adam takes the log and chromaticity terms only, not energy");
+  }
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&] { return Solve(material, problem, options); });
 }

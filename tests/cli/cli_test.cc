@@ -224,7 +224,7 @@ TEST_F(Cli, BadDirectionsAreNamed) {
 }
 
 TEST_F(Cli, ShippedProblemsFit) {
-  for (const char* name : {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best"}) {
+  for (const char* name : {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best", "nbrdf_adam"}) {
     const std::string flags = StrCat("--flagfile=", PBNBRDF_PROBLEMS, "/", name, ".flags");
     const Result fit = Run("fit " + flags + " --material=builtin:satin-gold --samples=300" +
                            " --max_iterations=2 --out=" + Path("a.safetensors"));

@@ -117,5 +117,35 @@ TYPED_TEST(Kernels, AddTransposedProductAdds) {
   }
 }
 
+TYPED_TEST(Kernels, AddRowProductsAdds) {
+  using T = TypeParam;
+  for (auto [p, q, size] : {std::tuple(1, 1, 1), {4, 4, 128}, {5, 7, 31}, {21, 22, 128}, {3, 9, 0}}) {
+    const int stride = size + 3;
+    const auto x = Random<T>(p * stride, 9), y = Random<T>(q * stride, 10);
+    std::vector<T> c(p * (q + 1), T(0.5));
+    AddRowProducts(T(-2), x.data(), p, stride, y.data(), q, stride, size, c.data(), q + 1);
+    for (int i = 0; i < p; ++i) {
+      for (int j = 0; j < q; ++j) {
+        double sum = 0.5;
+        for (int k = 0; k < size; ++k) sum -= 2.0 * x[i * stride + k] * y[j * stride + k];
+        ASSERT_NEAR(c[i * (q + 1) + j], sum, 2.0 * this->kTolerance) << p << " x " << q;
+      }
+      ASSERT_EQ(c[i * (q + 1) + q], T(0.5));
+    }
+  }
+}
+
+TYPED_TEST(Kernels, ExpIsAccurate) {
+  using T = TypeParam;
+  std::vector<T> x = Random<T>(kBatch, 11);
+  for (T& value : x) value *= 20;
+  std::vector<T> y = x;
+  Exp(y.data(), y.size());
+  for (int n = 0; n < kBatch; ++n) {
+    const double exact = std::exp(double(x[n]));
+    EXPECT_NEAR(y[n], exact, 8 * std::numeric_limits<T>::epsilon() * exact);
+  }
+}
+
 }  // namespace
 }  // namespace pbnbrdf::kernels

@@ -124,6 +124,26 @@ TEST(FitBrdf, LbfgsComesNearToo) {
   EXPECT_LT(MeanAbsDifference(*gold, fit.network), 0.05 * MeanAbsDifference(*gold, start.network));
 }
 
+TEST(FitBrdf, AdamComesNearAndIsTheSameForAnyNumberOfThreads) {
+  FitProblem problem = SmallProblem();
+  problem.samples = 5000;
+  FitOptions options;
+  options.solver = Solver::kAdam;
+  options.adam.learning_rate = 5e-3;
+  options.max_iterations = 30;
+  const auto gold = MakeBuiltin("satin-gold");
+  options.threads = 1;
+  const Fit one = FitBrdf(*gold, problem, options);
+  options.threads = 2;
+  const Fit two = FitBrdf(*gold, problem, options);
+  EXPECT_EQ(one.network.weights(), two.network.weights());
+  options.max_iterations = 0;
+  const Fit start = FitBrdf(*gold, problem, options);
+  EXPECT_LT(MeanAbsDifference(*gold, two.network), 0.3 * MeanAbsDifference(*gold, start.network));
+  problem.energy_weight = 1.0;
+  EXPECT_THAT(ErrorOf([&] { FitBrdf(*gold, problem, options); }), HasSubstr("adam takes the log"));
+}
+
 TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
   // Half a sphere of white: brighter than anything physical, so the term must act.
   const NetworkShape shape(Encoding::kMultiscale, {2}, Activation::kTanh);

@@ -28,6 +28,10 @@ void DenseTransposed(const T* layer, int out, int in, const T* y, T* x);
 template <typename T>
 void Tanh(T* x, std::size_t count);
 
+// In place, to a few units in the last place. count: a multiple of kBatch.
+template <typename T>
+void Exp(T* x, std::size_t count);
+
 // out[n][(i, j)] = sum over r of a[n][r][i] b[n][r][j], for n < kBatch, r < rows. By sample:
 //   a: row stride Padded(na), sample stride rows * Padded(na), kPad readable elements behind the
 //      last sample; likewise b with nb.
@@ -44,9 +48,11 @@ template <typename T>
 void AddTransposedProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,
                           double* c);
 
-// c[i][j] -= sum over k < size of x[i][k] y[j][k], for i < rows_x and j < rows_y. Row-major, any sizes.
-void SubtractRowProducts(const double* x, int rows_x, int x_stride, const double* y, int rows_y,
-                         int y_stride, int size, double* c, int c_stride);
+// c[i][j] += alpha times the sum over k < size of x[i][k] y[j][k], for i < rows_x and j < rows_y.
+// Row-major, any sizes.
+template <typename T>
+void AddRowProducts(T alpha, const T* x, int rows_x, int x_stride, const T* y, int rows_y,
+                    int y_stride, int size, T* c, int c_stride);
 
 // The instruction set in use: "AVX3", "AVX2", ...
 const char* InstructionSet();

@@ -36,7 +36,12 @@ class BatchedMlp {
   // After Forward with the same weights.
   void Backward(const T* weights);
 
-  // What Backward left, by sample, kPad readable elements behind the last (kernels.h):
+  // gradient += scale * the sum over samples of the gradient with respect to all weights, of row 0.
+  void AddWeightGradient(T scale, T* gradient) const;
+
+  // Makes what Backward left available by sample, kPad readable elements behind the last (kernels.h):
+  void Transpose();
+
   //   layer_input: in(layer) values and 1, stride Padded(in + 1).
   //   delta: rows of out(layer) values, row stride Padded(out), sample stride rows times that.
   const T* layer_input(int layer) const { return inputs_by_sample_[layer].data(); }
@@ -46,11 +51,10 @@ class BatchedMlp {
   static constexpr int kChannels = NetworkShape::kChannels;
 
   void BackwardRow(const T* weights, int row);
-  void TransposeAll();
-
   NetworkShape shape_;
   int rows_;
   const T* input_ = nullptr;
+  AlignedVector<T> ones_;                      // the input of the biases, kBatch
   std::vector<AlignedVector<T>> activations_;  // [layer]: its output, by feature
   std::vector<AlignedVector<T>> deltas_;       // [layer]: row after row, by feature
   std::vector<AlignedVector<T>> inputs_by_sample_, deltas_by_sample_;

@@ -12,6 +12,7 @@
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/solve/adam.h"
 #include "pbnbrdf/solve/stage.h"
 
 namespace pbnbrdf {
@@ -27,17 +28,21 @@ enum class Solver {
   kTinyLm,  // Levenberg-Marquardt on the normal equations (tiny_lm.h)
   kLm,      // Ceres' Levenberg-Marquardt (ceres_solvers.h): the same steps, at several times the cost
   kLbfgs,   // Ceres' L-BFGS: cheap iterations, but thousands of them
+  kAdam,    // Adam on minibatches of the papers' own loss (adam.h), without the energy term
 };
 
-inline constexpr NameTable<Solver, 3> kSolvers = {
-    {{"tiny_lm", Solver::kTinyLm}, {"lm", Solver::kLm}, {"lbfgs", Solver::kLbfgs}}};
+inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
+                                                   {"lm", Solver::kLm},
+                                                   {"lbfgs", Solver::kLbfgs},
+                                                   {"adam", Solver::kAdam}}};
 
 struct FitOptions {
   Solver solver = Solver::kTinyLm;
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
-  int max_iterations = 150;          // >= 0, without the energy term, and again with it
+  int max_iterations = 150;          // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;       // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
+  AdamOptions adam;                  // of Solver::kAdam
   int threads = 0;                   // 0: as many as the machine has
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;

@@ -1,0 +1,29 @@
+// adam.h: Adam [1] on minibatches of the papers' own loss: the published recipe, as the baseline.
+//
+// [1] D. Kingma, J. Ba. Adam: A Method for Stochastic Optimization. ICLR 2015.
+#pragma once
+
+#include <span>
+
+#include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/solve/stage.h"
+
+namespace pbnbrdf {
+
+// NBRDF's settings (Sztrajman et al. 2021) are the defaults.
+struct AdamOptions {
+  std::size_t batch = 512;      // samples a step, >= 1; an epoch's last, smaller batch is left out
+  double learning_rate = 5e-4;  // > 0
+
+  // Throws Error, naming the field, its value and what it must be.
+  void Validate() const;
+};
+
+// An iteration is an epoch: every sample once, in random order (problem.seed). The cost reported is the
+// mean |eq. 6| over some of the training samples. weights: where to start, and on return and in callbacks
+// the last ones, as is usual with Adam. Throws Error if they aren't finite any more.
+StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> samples,
+                         const AdamOptions& adam, const StageOptions& options,
+                         std::vector<double>* weights);
+
+}  // namespace pbnbrdf
