@@ -87,8 +87,7 @@ std::string ProblemFlagfile() {
 int RunFit(const std::string&) {
   RequireFlag("material", FLAGS_material);
   RequireFlag("out", FLAGS_out);
-  const FitProblem problem = ProblemFromFlags();
-  FitOptions options = OptionsFromFlags();
+  auto [problem, options] = ParseFitFlags();
   CheckWritable(FLAGS_out);
   if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
   if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);

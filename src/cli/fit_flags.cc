@@ -37,16 +37,6 @@ DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost 
 namespace pbnbrdf::cli {
 namespace {
 
-// Whatever a flag's value violates is wrong usage.
-template <typename Function>
-auto AsUsage(Function function) {
-  try {
-    return function();
-  } catch (const Error& error) {
-    throw UsageError(StrCat("--", error.what()));
-  }
-}
-
 struct Terms {
   bool log = false, chromaticity = false, energy = false;
 };
@@ -87,7 +77,6 @@ FitProblem ParseProblem() {
   problem.growth = FLAGS_growth;
   problem.seed = FLAGS_seed;
   problem.precision = ParseName(kPrecisions, "precision", FLAGS_precision);
-  problem.Validate();
   return problem;
 }
 
@@ -101,7 +90,6 @@ FitOptions ParseOptions() {
   options.adam.batch = FLAGS_batch;
   options.adam.learning_rate = FLAGS_learning_rate;
   options.threads = FLAGS_threads;
-  options.Validate();
   return options;
 }
 
@@ -118,8 +106,14 @@ std::vector<FlagGroup> ProblemFlags() {
             "learning_rate"}}};
 }
 
-FitProblem ProblemFromFlags() { return AsUsage(ParseProblem); }
-
-FitOptions OptionsFromFlags() { return AsUsage(ParseOptions); }
+FitFlags ParseFitFlags() {
+  try {
+    const FitFlags flags = {ParseProblem(), ParseOptions()};
+    ValidateFit(flags.problem, flags.options);
+    return flags;
+  } catch (const Error& error) {
+    throw UsageError(StrCat("--", error.what()));  // the message begins with the field, the flag's name
+  }
+}
 
 }  // namespace pbnbrdf::cli

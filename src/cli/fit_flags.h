@@ -11,8 +11,12 @@ namespace pbnbrdf::cli {
 // The flags that make up a problem and say how to solve it: with them a fit can be repeated.
 std::vector<FlagGroup> ProblemFlags();
 
-// Throw UsageError if a flag's value is none that the flag takes.
-FitProblem ProblemFromFlags();
-FitOptions OptionsFromFlags();
+struct FitFlags {
+  FitProblem problem;
+  FitOptions options;
+};
+
+// Throws UsageError if a flag's value is none that the flag takes, or flags don't go together.
+FitFlags ParseFitFlags();
 
 }  // namespace pbnbrdf::cli

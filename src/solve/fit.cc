@@ -174,22 +174,24 @@ Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& opt
 
 }  // namespace
 
-void FitOptions::Validate() const {
-  if (max_iterations < 0) Fail("max_iterations = ", max_iterations, "; must be >= 0");
-  if (!(max_seconds > 0.0)) Fail("max_seconds = ", max_seconds, "; must be > 0");
-  if (!(function_tolerance >= 0.0)) {
-    Fail("function_tolerance = ", function_tolerance, "; must be >= 0");
+void ValidateFit(const FitProblem& problem, const FitOptions& options) {
+  problem.Validate();
+  options.adam.Validate();
+  if (options.max_iterations < 0) {
+    Fail("max_iterations = ", options.max_iterations, "; must be >= 0");
   }
-  adam.Validate();
-  if (threads < 0) Fail("threads = ", threads, "; must be >= 0");
+  if (!(options.max_seconds > 0.0)) Fail("max_seconds = ", options.max_seconds, "; must be > 0");
+  if (!(options.function_tolerance >= 0.0)) {
+    Fail("function_tolerance = ", options.function_tolerance, "; must be >= 0");
+  }
+  if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");
+  if (options.solver == Solver::kAdam && problem.energy_weight > 0.0) {
+    Fail("terms: adam takes no energy term; give it log or log,chromaticity");
+  }
 }
 
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
-  problem.Validate();
-  options.Validate();
-  if (options.solver == Solver::kAdam && problem.energy_weight > 0.0) {
-    Fail("terms: adam takes the log and chromaticity terms only, not energy");
-  }
+  ValidateFit(problem, options);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&] { return Solve(material, problem, options); });
 }

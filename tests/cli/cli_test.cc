@@ -100,6 +100,7 @@ TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError(fit + " --hidden=5000", 2, "--hidden: a layer of 5000 units; must be 1 to 256");
   ExpectError(fit + " --loss_scale=0", 2, "--loss_scale = 0; must be finite and > 0");
   ExpectError(fit + " --max_seconds=-1", 2, "--max_seconds = -1; must be > 0");
+  ExpectError(fit + " --solver=adam", 2, "--terms: adam takes no energy term");
   ExpectError(fit + " --threads=-1", 2, "--threads = -1; must be >= 0");
   ExpectError(fit + " gold.binary", 2, "'gold.binary' is not a flag");
   ExpectError("info", 2, "a file or another source is missing");

@@ -46,9 +46,6 @@ struct FitOptions {
   int threads = 0;                   // 0: as many as the machine has
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
-
-  // Throws Error, naming the field, its value and what it must be.
-  void Validate() const;
 };
 
 struct FitSummary {
@@ -65,10 +62,14 @@ struct Fit {
   FitSummary summary;
 };
 
+// What FitBrdf checks before it starts. Throws Error if the problem or the options are invalid or don't go
+// together.
+void ValidateFit(const FitProblem& problem, const FitOptions& options);
+
 // The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the same network to the last bit, whatever the number of threads. The energy
 // term joins in a second stage, if the directional albedo of the first stage's network exceeds 1 in a
-// stratum. Throws Error if the problem or the options are invalid, the material has next to no data,
-// or the solver finds no usable step.
+// stratum. Throws Error as ValidateFit does, if the material has next to no data, or if the solver
+// finds no usable step.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf
