@@ -75,7 +75,8 @@ void BM_Cost(benchmark::State& state) {
   }
   CountSamples(state, fixture.samples.size());
 }
-BENCHMARK(BM_Cost)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Cost)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(
+    benchmark::kMillisecond);
 
 // The factor that the condensed block adds to each evaluation.
 void BM_FactorWithJitter(benchmark::State& state) {
@@ -92,7 +93,8 @@ void BM_FactorWithJitter(benchmark::State& state) {
 }
 BENCHMARK(BM_FactorWithJitter)->Unit(benchmark::kMillisecond);
 
-// One evaluation with all Jacobians as Ceres asks for it. Args: samples, 1 for the autodiff problem.
+// One evaluation with all Jacobians as Ceres asks for it. Args: samples, 1 for the autodiff
+// problem.
 void BM_EvaluateJacobian(benchmark::State& state) {
   Fixture fixture(state.range(0));
   ceres::Problem problem;

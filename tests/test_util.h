@@ -20,8 +20,8 @@ namespace pbnbrdf {
 inline constexpr double kPi = std::numbers::pi;
 
 // A file in the folder of reference data; skips the test if it is absent.
-#define PBNBRDF_REFERENCE_FILE(variable, name)                                        \
-  const std::string variable = std::string(PBNBRDF_REFERENCE_DATA) + "/" + (name);    \
+#define PBNBRDF_REFERENCE_FILE(variable, name)                                     \
+  const std::string variable = std::string(PBNBRDF_REFERENCE_DATA) + "/" + (name); \
   if (!std::filesystem::exists(variable)) GTEST_SKIP() << "needs reference data: " << variable
 
 // A folder that goes when the test ends.
@@ -36,8 +36,7 @@ class TemporaryFolder {
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   std::size_t file_count() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(path_), {}));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }
 
  private:

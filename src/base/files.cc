@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -24,6 +25,32 @@ void WriteStandardOutput(std::string_view content) {
     Fail("standard output: cannot write: ", Reason());
   }
 }
+
+// False, with errno set, if not all of it could be written.
+bool WriteBytes(const fs::path& path, std::string_view content) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  return static_cast<bool>(out);
+}
+
+// While it lives, signals that would end the program wait.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigset_t waiting;
+    sigemptyset(&waiting);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&waiting, signal);
+    pthread_sigmask(SIG_BLOCK, &waiting, &before_);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+ private:
+  sigset_t before_;
+};
 
 }  // namespace
 
@@ -53,15 +80,20 @@ std::string ReadFile(const std::string& path, std::uintmax_t limit) {
 
 void WriteFile(const std::string& path, std::string_view content) {
   if (path == "-") return WriteStandardOutput(content);
-  const std::string partial = StrCat(path, ".", getpid(), ".part");
-  errno = 0;
-  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out || std::rename(partial.c_str(), path.c_str()) != 0) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    // A device or a pipe: nothing to rename over.
+    if (!WriteBytes(path, content)) Fail(path, ": cannot write: ", Reason());
+    return;
+  }
+  // A link stays one: what it points to is replaced.
+  const fs::path target = fs::exists(status) ? fs::canonical(path, code) : fs::path(path);
+  const fs::path partial = target.parent_path() / StrCat(".pbnbrdf.", getpid(), ".part");
+  const SignalsWait until_renamed;
+  if (!WriteBytes(partial, content) || std::rename(partial.c_str(), target.c_str()) != 0) {
     const std::string reason = Reason();
-    std::error_code ignored;
-    fs::remove(partial, ignored);
+    fs::remove(partial, code);
     Fail(path, ": cannot write: ", reason);
   }
 }
@@ -69,10 +101,16 @@ void WriteFile(const std::string& path, std::string_view content) {
 void CheckWritable(const std::string& path) {
   if (path == "-") return;
   if (path.empty()) Fail("an output file's name is empty");
-  if (fs::is_directory(path)) Fail(path, ": cannot write: is a folder");
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (status.type() == fs::file_type::none) Fail(path, ": cannot write: ", code.message());
+  if (fs::is_directory(status)) Fail(path, ": cannot write: is a folder");
   fs::path folder = fs::path(path).parent_path();
   if (folder.empty()) folder = ".";
-  if (!fs::is_directory(folder)) Fail(path, ": cannot write: no folder ", folder.string());
+  if (!fs::is_directory(folder, code)) {
+    Fail(path, ": cannot write: no folder ", folder.string());
+  }
+  errno = 0;
   if (access(folder.c_str(), W_OK) != 0) Fail(path, ": cannot write: ", Reason());
 }
 

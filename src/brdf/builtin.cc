@@ -44,13 +44,34 @@ constexpr BuiltinMaterial kMaterials[] = {
     {"glossy-grey-paper", kWard, [] { return Ward(0.29, 0.083, 0.082); }},
     {"ivory-computer-plastic", kWard, [] { return Ward(0.45, 0.043, 0.13); }},
     {"plastic-laminate", kWard, [] { return Ward(0.67, 0.070, 0.092); }},
-    {"blue-plastic", kPatches, [] { return Plastic({0.040, 0.047, 0.305}, 0.05); }},
-    {"red-satin-plastic", kPatches, [] { return Plastic({0.429, 0.031, 0.041}, 0.25); }},
-    {"rough-iron", kMetals, [] { return Metal({0.562, 0.565, 0.578}, 0.4); }},
-    {"satin-gold", kMetals, [] { return Metal({1.000, 0.782, 0.344}, 0.2); }},
-    {"brushed-copper", kMetals, [] { return Metal({0.955, 0.638, 0.538}, 0.1); }},
-    {"polished-chromium", kMetals, [] { return Metal({0.549, 0.556, 0.554}, 0.01); }},
-    {"silver-mirror", kMetals, [] { return Metal({0.972, 0.960, 0.915}, 0.001); }},
+    {"blue-plastic", kPatches,
+     [] {
+       return Plastic({0.040, 0.047, 0.305}, 0.05);
+     }},
+    {"red-satin-plastic", kPatches,
+     [] {
+       return Plastic({0.429, 0.031, 0.041}, 0.25);
+     }},
+    {"rough-iron", kMetals,
+     [] {
+       return Metal({0.562, 0.565, 0.578}, 0.4);
+     }},
+    {"satin-gold", kMetals,
+     [] {
+       return Metal({1.000, 0.782, 0.344}, 0.2);
+     }},
+    {"brushed-copper", kMetals,
+     [] {
+       return Metal({0.955, 0.638, 0.538}, 0.1);
+     }},
+    {"polished-chromium", kMetals,
+     [] {
+       return Metal({0.549, 0.556, 0.554}, 0.01);
+     }},
+    {"silver-mirror", kMetals,
+     [] {
+       return Metal({0.972, 0.960, 0.915}, 0.001);
+     }},
 };
 
 }  // namespace

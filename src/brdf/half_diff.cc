@@ -48,8 +48,8 @@ RusinkiewiczAngles ToAngles(const DirectionPair& pair) {
 DirectionPair FromAngles(const RusinkiewiczAngles& angles) {
   const Vec3 h = FromSpherical(angles.theta_h, angles.phi_h);
   const Vec3 d = FromSpherical(angles.theta_d, angles.phi_d);
-  const Tangents t = TangentsAt(std::sin(angles.theta_h), h.z, std::sin(angles.phi_h),
-                                std::cos(angles.phi_h));
+  const Tangents t =
+      TangentsAt(std::sin(angles.theta_h), h.z, std::sin(angles.phi_h), std::cos(angles.phi_h));
   const Vec3 along = d.z * h;
   const Vec3 across = d.x * t.theta + d.y * t.phi;
   return {along + across, along - across};

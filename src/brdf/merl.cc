@@ -138,7 +138,8 @@ void MerlBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
 
 bool MerlBrdf::IsKnown(const DirectionPair& pair) const {
   const TablePosition at = Locate(pair);
-  return pair.AboveHorizon() && IsValid(BinIndex(at.theta_h.lower, at.theta_d.lower, at.phi_d.lower));
+  return pair.AboveHorizon() &&
+         IsValid(BinIndex(at.theta_h.lower, at.theta_d.lower, at.phi_d.lower));
 }
 
 std::string MerlBrdf::Description() const {

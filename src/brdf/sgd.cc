@@ -37,9 +37,16 @@ SgdParameters ParseRow(const std::string& place, const std::vector<std::string>&
   const auto number = [&](std::size_t column) {
     return ParseNumber(StrCat(place, ", column ", column + 1), row[column]);
   };
-  const SgdParameters m = {.rho_d = number(3), .rho_s = number(4), .alpha = number(5),
-                           .p = number(6), .f0 = number(7), .f1 = number(8), .kappa = number(9),
-                           .lambda = number(10), .c = number(11), .k = number(12),
+  const SgdParameters m = {.rho_d = number(3),
+                           .rho_s = number(4),
+                           .alpha = number(5),
+                           .p = number(6),
+                           .f0 = number(7),
+                           .f1 = number(8),
+                           .kappa = number(9),
+                           .lambda = number(10),
+                           .c = number(11),
+                           .k = number(12),
                            .theta_0 = number(13)};
   if (!(m.alpha > 0.0)) Fail(place, ": alpha = ", m.alpha, "; must be > 0");
   return m;

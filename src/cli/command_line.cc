@@ -169,7 +169,8 @@ std::string HelpText(const Command& command) {
     }
   }
   if (!command.flags.empty()) {
-    help << "\n--flagfile=FILE reads flags from a file, one a line; later flags replace earlier ones.\n";
+    help << "\n--flagfile=FILE reads flags from a file, one a line; later flags replace earlier "
+            "ones.\n";
   }
   if (!command.notes.empty()) help << "\n" << command.notes;
   help << "\nExit status: 0 done, 1 bad input or output, 2 wrong usage.\n";

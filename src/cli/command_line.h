@@ -29,8 +29,8 @@ struct Command {
   int (*run)(const std::string& argument);
 };
 
-// Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of the
-// same, # for comments; later settings replace earlier ones) into gflags' flags. Returns the
+// Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of
+// the same, # for comments; later settings replace earlier ones) into gflags' flags. Returns the
 // positional argument, or "". Throws UsageError.
 std::string ParseFlags(const Command& command, const std::vector<std::string>& arguments);
 

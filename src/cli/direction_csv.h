@@ -15,8 +15,8 @@ struct DirectionCsv {
   std::vector<DirectionPair> pairs;
 };
 
-// The header names theta_i,phi_i,theta_o,phi_o (radians) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (made unit)
-// among its columns. Blank lines are left out. Throws Error, naming `file` and the line.
+// The header names theta_i,phi_i,theta_o,phi_o (radians) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (made
+// unit) among its columns. Blank lines are left out. Throws Error, naming `file` and the line.
 DirectionCsv ParseDirectionCsv(const std::string& file, const std::string& text);
 
 // The rows with r,g,b appended, 17 significant digits.

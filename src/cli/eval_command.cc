@@ -18,14 +18,20 @@ DEFINE_uint64(eval_seed, 1, "of the held-out samples");
 namespace pbnbrdf::cli {
 namespace {
 
+constexpr std::size_t kMostSamples = 100'000'000;
+
 int RunEval(const std::string&) {
   RequireFlag("fit", FLAGS_fit);
   RequireFlag("material", FLAGS_material);
-  if (FLAGS_eval_samples == 0) throw UsageError("--eval_samples = 0; must be >= 1");
+  if (FLAGS_eval_samples < 1 || FLAGS_eval_samples > kMostSamples) {
+    throw UsageError(
+        StrCat("--eval_samples = ", FLAGS_eval_samples, "; must be 1 to ", kMostSamples));
+  }
   const NeuralBrdf fit = NeuralBrdf::Read(FLAGS_fit);
   const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
-  const nlohmann::ordered_json measures =
-      MeasureFit(*material, fit, fit.weights().size(), FLAGS_eval_samples, FLAGS_eval_seed);
+  const nlohmann::ordered_json measures = AboutMaterial([&] {
+    return MeasureFit(*material, fit, fit.weights().size(), FLAGS_eval_samples, FLAGS_eval_seed);
+  });
   std::cout << (FLAGS_json ? measures.dump(2) + "\n" : MeasuresText(measures));
   return 0;
 }

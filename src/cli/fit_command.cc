@@ -84,34 +84,48 @@ std::string ProblemFlagfile() {
   return text;
 }
 
+void CheckDifferent(const std::vector<std::string>& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!outputs[i].empty() && outputs[i] == outputs[j]) {
+        throw UsageError(StrCat(outputs[i], ": is to be two outputs at once"));
+      }
+    }
+  }
+}
+
 int RunFit(const std::string&) {
   RequireFlag("material", FLAGS_material);
   RequireFlag("out", FLAGS_out);
-  auto [problem, options] = ParseFitFlags();
+  FitFlags flags = ParseFitFlags();
+  CheckDifferent({FLAGS_out, FLAGS_summary, FLAGS_trace});
   CheckWritable(FLAGS_out);
   if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
   if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
+  std::signal(SIGINT, OnInterrupt);
   const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
 
   const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
-  std::signal(SIGINT, OnInterrupt);
   std::string trace = "iteration,seconds,cost,heldout_error\n";
-  options.on_iteration = [&](const FitProgress& progress) {
+  flags.options.on_iteration = [&](const FitProgress& progress) {
     if (show_progress) ShowProgress(progress);
     trace += TraceRow(progress);
     return !interrupted;
   };
-  Fit fit = FitBrdf(*material, problem, options);
+  const Fit fit = AboutMaterial([&] { return FitBrdf(*material, flags.problem, flags.options); });
   if (show_progress) std::fprintf(stderr, "\r\033[K");
 
-  const nlohmann::ordered_json measures =
-      MeasureFit(*material, fit.network, fit.network.weights().size(), kSummarySamples, kSummarySeed);
-  const std::string flags = ProblemFlagfile();
+  const nlohmann::ordered_json measures = MeasureFit(
+      *material, fit.network, fit.network.weights().size(), kSummarySamples, kSummarySeed);
+  const std::string flagfile = ProblemFlagfile();
   NeuralBrdf(fit.network.shape(), fit.network.weights(),
-             Describe(problem, fit.summary, measures, flags))
+             Describe(flags.problem, fit.summary, measures, flagfile))
       .Write(FLAGS_out);
   if (!FLAGS_summary.empty()) {
-    WriteFile(FLAGS_summary, SummaryJson(measures, problem, fit.summary, flags).dump(2) + "\n");
+    WriteFile(FLAGS_summary,
+              SummaryJson(measures, flags.problem, fit.summary, flagfile)
+                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                  "\n");
   }
   if (!FLAGS_trace.empty()) WriteFile(FLAGS_trace, trace);
   if (!FLAGS_quiet) {
@@ -131,7 +145,8 @@ Command FitCommand() {
   command.summary = "fits a neural BRDF to a material";
   command.usage =
       "  pbnbrdf fit --material=gold.binary --out=gold.safetensors\n"
-      "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary --out=gold.safetensors\n";
+      "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary "
+      "--out=gold.safetensors\n";
   command.notes = std::string(kSourceNotes) +
                   "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
   command.flags = {{"", {"material", "out", "summary", "trace", "quiet", "threads"}}};

@@ -16,7 +16,8 @@ DEFINE_double(energy_weight, 1.0, "weight of the energy term");
 DEFINE_int32(energy_strata, 16, "incident angles of the energy term");
 DEFINE_int32(energy_theta, 64, "its quadrature's elevations of the half vector");
 DEFINE_int32(energy_phi, 32, "its quadrature's azimuths of the half vector");
-DEFINE_string(loss, "soft_l1", "robust loss of the log and chromaticity terms: "
+DEFINE_string(loss, "soft_l1",
+              "robust loss of the log and chromaticity terms: "
               "l2 | soft_l1 | huber | cauchy");
 DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square to linear");
 DEFINE_string(sampling, "highlight",
@@ -26,7 +27,8 @@ DEFINE_uint64(first_samples, 1000, "samples to start with; --samples or more: al
 DEFINE_double(growth, 3.0, "factor of samples each time that the cost falls slowly");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
-DEFINE_string(solver, "tiny_lm", "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres' | adam");
+DEFINE_string(solver, "tiny_lm",
+              "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres' | adam");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, always with lm");
 DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations (adam: epochs)");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
@@ -112,7 +114,8 @@ FitFlags ParseFitFlags() {
     ValidateFit(flags.problem, flags.options);
     return flags;
   } catch (const Error& error) {
-    throw UsageError(StrCat("--", error.what()));  // the message begins with the field, the flag's name
+    throw UsageError(
+        StrCat("--", error.what()));  // the message begins with the field, the flag's name
   }
 }
 

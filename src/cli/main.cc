@@ -1,7 +1,9 @@
 // pbnbrdf: the command line. Finds the subcommand, runs it and turns exceptions into one line.
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <new>
@@ -68,8 +70,12 @@ int main(int argc, char** argv) {
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres has to say comes back in its summary
   google::InitGoogleLogging(argv[0]);
-  const auto fail = [](const char* message, int status) {
-    std::fprintf(stderr, "pbnbrdf: %s\n", message);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
+  const auto fail = [](std::string message, int status) {
+    // One line, whatever names and texts are quoted in it.
+    std::replace_if(
+        message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 127; }, '?');
+    std::fprintf(stderr, "pbnbrdf: %s\n", message.c_str());
     return status;
   };
   try {
@@ -80,5 +86,7 @@ int main(int argc, char** argv) {
     return fail(error.what(), 1);
   } catch (const std::bad_alloc&) {
     return fail("out of memory", 1);
+  } catch (const std::exception& error) {
+    return fail(error.what(), 1);
   }
 }

@@ -3,6 +3,22 @@
 
 #include <gflags/gflags_declare.h>
 
+#include "pbnbrdf/base/error.h"
+
 DECLARE_string(material);
 DECLARE_string(out);
 DECLARE_int32(threads);
+
+namespace pbnbrdf::cli {
+
+// Runs what may find fault with the material, and puts its name before the message.
+template <typename Function>
+auto AboutMaterial(Function function) {
+  try {
+    return function();
+  } catch (const Error& error) {
+    Fail(FLAGS_material, ": ", error.what());
+  }
+}
+
+}  // namespace pbnbrdf::cli

@@ -47,8 +47,10 @@ Command ValuesCommand() {
       "  pbnbrdf values --material=gold.safetensors --directions=pairs.csv --out=values.csv\n";
   command.notes =
       "The CSV's first line names its columns: theta_i,phi_i,theta_o,phi_o (radians; wi points to\n"
-      "the light) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (any length), among others, which are kept. The\n"
-      "columns r,g,b are appended: linear RGB in 1/sr, without the cosine, 17 significant digits; 0\n"
+      "the light) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (any length), among others, which are kept. "
+      "The\n"
+      "columns r,g,b are appended: linear RGB in 1/sr, without the cosine, 17 significant digits; "
+      "0\n"
       "where a direction isn't above the horizon.\n\n" +
       std::string(kSourceNotes);
   command.flags = {{"", {"material", "directions", "out"}}};

@@ -34,8 +34,8 @@ bool Cholesky::Factor() {
       std::copy(from, from + width, panel_.data() + i * kBlock);
       std::fill(from, from + width, 0.0);
     }
-    kernels::AddRowProducts(1.0, panel_.data(), below, kBlock, inverse_.data(), width, kBlock, width,
-                            row(end) + begin, stride_);
+    kernels::AddRowProducts(1.0, panel_.data(), below, kBlock, inverse_.data(), width, kBlock,
+                            width, row(end) + begin, stride_);
   }
   return true;
 }

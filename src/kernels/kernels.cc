@@ -87,7 +87,8 @@ HWY_INLINE void PairProductsOf(const T* a, int na, const T* b, int nb, int rows,
     T* to = out + static_cast<std::size_t>(n) * out_stride;
     for (int i = 0; i < na; ++i) {
       const int first = symmetric ? i : 0;
-      // A whole vector is written at the end of each run of pairs; the next run overwrites the rest.
+      // A whole vector is written at the end of each run of pairs; the next run overwrites the
+      // rest.
       for (int j = first; j < nb; j += lanes) {
         auto sum = hn::Zero(d);
         for (int r = 0; r < rows; ++r) {

@@ -20,8 +20,8 @@ double SquaredNorm(const Rgb& f, double scale) {
   return (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * scale * scale;
 }
 
-// Mean over channels and a midpoint grid of angles of function(f(pair) - f(swapped pair)). The phi_d
-// are (k + offset) pi / n_phi.
+// Mean over channels and a midpoint grid of angles of function(f(pair) - f(swapped pair)). The
+// phi_d are (k + offset) pi / n_phi.
 template <typename Function>
 double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi, double offset,
                       Function function) {

@@ -99,10 +99,10 @@ void BatchedMlp<T>::Transpose() {
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
     const int in = shape_.in(layer), out = shape_.out(layer), padded = kernels::Padded(out);
     TransposeMatrix(layer == 0 ? input_ : activations_[layer - 1].data(), in,
-              inputs_by_sample_[layer].data(), kernels::Padded(in + 1));
+                    inputs_by_sample_[layer].data(), kernels::Padded(in + 1));
     for (int row = 0; row < rows_; ++row) {
       TransposeMatrix(deltas_[layer].data() + row * out * kBatch, out,
-                deltas_by_sample_[layer].data() + row * padded, rows_ * padded);
+                      deltas_by_sample_[layer].data() + row * padded, rows_ * padded);
     }
   }
 }

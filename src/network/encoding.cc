@@ -22,8 +22,12 @@ std::array<double, kEncodedSize> Encode(Encoding encoding, const DirectionPair& 
     }
     case Encoding::kMultiscale: {
       const double theta_h = std::atan2(sin_h, h.z);
-      return {sin_h,     std::sqrt(theta_h * 2.0 / std::numbers::pi),
-              std::log(theta_h + 1e-3) / 3.0, doubled_x, doubled_y, d.z};
+      return {sin_h,
+              std::sqrt(theta_h * 2.0 / std::numbers::pi),
+              std::log(theta_h + 1e-3) / 3.0,
+              doubled_x,
+              doubled_y,
+              d.z};
     }
   }
   return {};

@@ -22,8 +22,8 @@ const std::string& Require(const std::string& path, const NeuralBrdf::Metadata& 
   return found->second;
 }
 
-const Tensor& Require(const std::string& path, const SafetensorsFile& file,
-                      const std::string& name, const std::vector<std::int64_t>& shape) {
+const Tensor& Require(const std::string& path, const SafetensorsFile& file, const std::string& name,
+                      const std::vector<std::int64_t>& shape) {
   const auto found = file.tensors.find(name);
   if (found == file.tensors.end()) Fail(path, ": tensor ", name, " is missing");
   if (found->second.shape != shape) {
@@ -39,10 +39,12 @@ std::vector<int> HiddenSizes(const std::string& path, const SafetensorsFile& fil
   std::vector<int> sizes;
   for (int layer = 0; file.tensors.count(BiasName(layer)) != 0; ++layer) {
     const Tensor& bias = file.tensors.at(BiasName(layer));
-    if (bias.shape.size() != 1) Fail(path, ": tensor ", BiasName(layer), " must have one dimension");
+    if (bias.shape.size() != 1)
+      Fail(path, ": tensor ", BiasName(layer), " must have one dimension");
     sizes.push_back(static_cast<int>(bias.values.size()));
   }
-  if (sizes.size() < 2) Fail(path, ": not a fitted network: tensors fc1.bias, fc2.bias are missing");
+  if (sizes.size() < 2)
+    Fail(path, ": not a fitted network: tensors fc1.bias, fc2.bias are missing");
   sizes.pop_back();
   return sizes;
 }

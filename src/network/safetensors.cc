@@ -103,13 +103,19 @@ SafetensorsFile ReadSafetensors(const std::string& path) {
                                   /*allow_exceptions=*/false);
   if (!header.is_object()) Fail(path, ": not a safetensors file: its header is not a JSON object");
   SafetensorsFile file;
+  std::size_t used = 0;
   for (const auto& [name, entry] : header.items()) {
     if (name == "__metadata__") {
       file.metadata = ParseMetadata(path, entry);
     } else {
-      file.tensors[name] = ParseTensor(StrCat(path, ": tensor ", name), entry, bytes,
-                                       kLengthBytes + header_size);
+      const Tensor& tensor = file.tensors[name] =
+          ParseTensor(StrCat(path, ": tensor ", name), entry, bytes, kLengthBytes + header_size);
+      used += tensor.values.size() * (entry["dtype"] == "F64" ? sizeof(double) : sizeof(float));
     }
+  }
+  const std::size_t available = bytes.size() - kLengthBytes - header_size;
+  if (used != available) {
+    Fail(path, ": its tensors take ", used, " bytes, but ", available, " follow the header");
   }
   return file;
 }
@@ -125,7 +131,8 @@ void WriteSafetensors(const std::string& path, const SafetensorsFile& file) {
                     {"data_offsets", {data.size(), data.size() + size}}};
     data.append(reinterpret_cast<const char*>(tensor.values.data()), size);
   }
-  std::string text = header.dump();
+  // File names may be in it that aren't UTF-8.
+  std::string text = header.dump(-1, ' ', false, json::error_handler_t::replace);
   text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
   const std::uint64_t header_size = text.size();
   std::string bytes(kLengthBytes, '\0');

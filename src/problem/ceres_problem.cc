@@ -75,8 +75,8 @@ void AddCondensed(Objective* objective, double* weights, ceres::Problem* ceres_p
                                   objective->shape().Blocks(weights));
 }
 
-void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples,
-                 double* weights, ceres::Problem* ceres_problem) {
+void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples, double* weights,
+                 ceres::Problem* ceres_problem) {
   const std::vector<double*> blocks = problem.Shape().Blocks(weights);
   AddPointTerm<LogResidual>(problem, samples, problem.log_weight, blocks, ceres_problem);
   AddPointTerm<ChromaticityResidual>(problem, samples, problem.chromaticity_weight, blocks,

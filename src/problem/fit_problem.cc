@@ -18,7 +18,8 @@ void CheckWeight(const char* field, double weight) {
   }
 }
 
-void CheckCount(const char* field, std::size_t value, std::size_t least, std::size_t most) {
+template <typename Integer>
+void CheckCount(const char* field, Integer value, Integer least, Integer most) {
   if (value < least || value > most) {
     Fail(field, " = ", value, "; must be ", least, " to ", most);
   }
@@ -37,26 +38,31 @@ void FitProblem::Validate() const {
   if (!(loss_scale > 0.0) || !std::isfinite(loss_scale)) {
     Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
   }
-  CheckCount("samples", samples, 1, kMostSamples);
-  CheckCount("first_samples", first_samples, 1, kMostSamples);
-  if (!(growth > 1.0) || !std::isfinite(growth)) Fail("growth = ", growth, "; must be finite and > 1");
-  CheckCount("energy_strata", static_cast<std::size_t>(energy_strata), 1, 1024);
-  CheckCount("energy_theta", static_cast<std::size_t>(energy_theta), 2, 1024);
-  CheckCount("energy_phi", static_cast<std::size_t>(energy_phi), 2, 1024);
+  CheckCount("samples", samples, std::size_t{1}, kMostSamples);
+  CheckCount("first_samples", first_samples, std::size_t{1}, kMostSamples);
+  if (!(growth > 1.0) || !std::isfinite(growth))
+    Fail("growth = ", growth, "; must be finite and > 1");
+  CheckCount("energy_strata", energy_strata, 1, 1024);
+  CheckCount("energy_theta", energy_theta, 2, 1024);
+  CheckCount("energy_phi", energy_phi, 2, 1024);
 }
 
 std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
   switch (loss) {
-    case Loss::kL2: return nullptr;
-    case Loss::kSoftL1: return std::make_unique<ceres::SoftLOneLoss>(scale);
-    case Loss::kHuber: return std::make_unique<ceres::HuberLoss>(scale);
-    case Loss::kCauchy: return std::make_unique<ceres::CauchyLoss>(scale);
+    case Loss::kL2:
+      return nullptr;
+    case Loss::kSoftL1:
+      return std::make_unique<ceres::SoftLOneLoss>(scale);
+    case Loss::kHuber:
+      return std::make_unique<ceres::HuberLoss>(scale);
+    case Loss::kCauchy:
+      return std::make_unique<ceres::CauchyLoss>(scale);
   }
   return nullptr;
 }
 
-std::vector<double> InitialWeights(const NetworkShape& shape,
-                                   std::span<const BrdfSample> samples, std::uint64_t seed) {
+std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
+                                   std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<double> weights(shape.num_weights(), 0.0);
   for (int layer = 0; layer < shape.num_layers(); ++layer) {

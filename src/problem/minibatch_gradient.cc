@@ -47,7 +47,8 @@ void MinibatchGradient::Evaluate(const float* weights, std::span<const std::uint
   const float scale = 1.0f / static_cast<float>(indices.size());
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
     const std::size_t first = b * kBatch;
-    EvaluateBlock(weights, indices.subspan(first, std::min<std::size_t>(kBatch, indices.size() - first)),
+    EvaluateBlock(weights,
+                  indices.subspan(first, std::min<std::size_t>(kBatch, indices.size() - first)),
                   scale, blocks_[b].get());
   });
   std::fill(gradient, gradient + shape_.num_weights(), 0.0f);
@@ -84,7 +85,8 @@ void MinibatchGradient::EvaluateBlock(const float* weights, std::span<const std:
     for (int c = 0; c < kChannels; ++c) {
       const float f = samples[(kValue + c) * kBatch + n];
       // |log1p(a) - log1p(b)| falls and rises with a as |a - b| does: no logarithm is needed.
-      const float log = log_weight_ / kChannels * Sign(fit[c] - f) * cos_i / (1.0f + cos_i * fit[c]);
+      const float log =
+          log_weight_ / kChannels * Sign(fit[c] - f) * cos_i / (1.0f + cos_i * fit[c]);
       const float slope = fit[c] > 0.0f ? gradient[c * kBatch + n] : 0.0f;
       gradient[c * kBatch + n] = weight * slope * (log + chroma * fit[c]);
     }

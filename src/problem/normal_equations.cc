@@ -11,8 +11,8 @@ using kernels::Padded;
 
 int PairCount(int a, int b, bool symmetric) { return symmetric ? a * (a + 1) / 2 : a * b; }
 
-// A sample's stride in the arrays of pair products: an odd number of kPad elements, lest the samples
-// of a column share a few sets of the cache.
+// A sample's stride in the arrays of pair products: an odd number of kPad elements, lest the
+// samples of a column share a few sets of the cache.
 int ProductStride(int pairs) {
   const int units = Padded(pairs + kPad) / kPad;
   return (units | 1) * kPad;
@@ -73,8 +73,8 @@ void NormalEquations<T>::AddBlock(const BatchedMlp<T>& mlp, Block* block) {
   const auto [l, m] = std::pair(block->l, block->m);
   const int unit_stride = ProductStride(block->unit_pairs);
   const int input_stride = ProductStride(block->input_pairs);
-  kernels::PairProducts(mlp.delta(l), shape_.out(l), mlp.delta(m), shape_.out(m), mlp.rows(), l == m,
-                        unit_products_.data(), unit_stride);
+  kernels::PairProducts(mlp.delta(l), shape_.out(l), mlp.delta(m), shape_.out(m), mlp.rows(),
+                        l == m, unit_products_.data(), unit_stride);
   kernels::PairProducts(mlp.layer_input(l), shape_.in(l) + 1, mlp.layer_input(m), shape_.in(m) + 1,
                         1, l == m, input_products_.data(), input_stride);
   kernels::AddTransposedProduct(unit_products_.data(), block->unit_pairs, unit_stride,

@@ -29,7 +29,8 @@ std::size_t PartitionCount(std::size_t batches) {
   return std::clamp<std::size_t>(batches / kBatchesPerPartition, 1, kMostPartitions);
 }
 
-// sum of rho(s) of one sample's residuals of a term, and the scale sqrt(weight rho'(s)) of its rows.
+// sum of rho(s) of one sample's residuals of a term, and the scale sqrt(weight rho'(s)) of its
+// rows.
 struct RobustWeight {
   double cost, row_scale;
 };
@@ -116,9 +117,11 @@ class BatchedObjective final : public Objective {
 
   double Cost(const double* weights) override {
     const AlignedVector<T> w = Converted(weights);
-    return Sum(w, [&](std::size_t sample, const double* z) {
-             return log_.Cost(sample, z) + chromaticity_.Cost(sample, z);
-           }) + energy_.Cost(w.data());
+    return Sum(w,
+               [&](std::size_t sample, const double* z) {
+                 return log_.Cost(sample, z) + chromaticity_.Cost(sample, z);
+               }) +
+           energy_.Cost(w.data());
   }
 
   bool Gradient(const double* weights, double* cost, double* gradient) override {
@@ -137,7 +140,8 @@ class BatchedObjective final : public Objective {
     });
     Linearization energy;
     energy.gradient.assign(shape_.num_weights(), 0.0);
-    energy.hessian.assign(energy_.empty() ? 0 : energy.gradient.size() * energy.gradient.size(), 0.0);
+    energy.hessian.assign(energy_.empty() ? 0 : energy.gradient.size() * energy.gradient.size(),
+                          0.0);
     if (!energy_.empty()) energy_.Linearize(w.data(), &energy);
     *cost = energy.cost;
     std::copy(energy.gradient.begin(), energy.gradient.end(), gradient);

@@ -61,8 +61,7 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
                          const AdamOptions& adam, const StageOptions& options,
                          std::vector<double>* weights) {
   MinibatchGradient objective(problem, samples);
-  const auto cost =
-      MakeObjective(problem, samples.first(std::min(kCostSamples, samples.size())));
+  const auto cost = MakeObjective(problem, samples.first(std::min(kCostSamples, samples.size())));
   Adam update(weights->size(), adam.learning_rate);
   std::mt19937_64 random(problem.seed);
   std::vector<std::uint32_t> order(samples.size());

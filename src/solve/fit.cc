@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kHeldOutSamples = 4096;
 constexpr std::uint64_t kHeldOutSeed = 1;
+constexpr int kMostSecondOrderWeights = 10000;
 
 // A clock that can be stopped.
 class Stopwatch {
@@ -126,10 +127,13 @@ class Fitter {
     }
     const std::unique_ptr<Objective> objective = MakeObjective(problem, samples);
     switch (options_.solver) {
-      case Solver::kTinyLm: return MinimizeTinyLm(objective.get(), stage, &weights_);
-      case Solver::kLbfgs: return MinimizeCeresLbfgs(objective.get(), stage, &weights_);
+      case Solver::kTinyLm:
+        return MinimizeTinyLm(objective.get(), stage, &weights_);
+      case Solver::kLbfgs:
+        return MinimizeCeresLbfgs(objective.get(), stage, &weights_);
       case Solver::kLm:
-      case Solver::kAdam: break;
+      case Solver::kAdam:
+        break;
     }
     AddCondensed(objective.get(), weights_.data(), &ceres_problem);
     return MinimizeCeresLm(&ceres_problem, stage);
@@ -184,6 +188,12 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
   if (!(options.function_tolerance >= 0.0)) {
     Fail("function_tolerance = ", options.function_tolerance, "; must be >= 0");
   }
+  const bool second_order = options.solver == Solver::kTinyLm || options.solver == Solver::kLm;
+  const int weights = problem.Shape().num_weights();
+  if (second_order && weights > kMostSecondOrderWeights) {
+    Fail("hidden: makes ", weights, " weights; a second-order solver takes at most ",
+         kMostSecondOrderWeights, ", as its memory grows with their square");
+  }
   if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");
   if (options.solver == Solver::kAdam && problem.energy_weight > 0.0) {
     Fail("terms: adam takes no energy term; give it log or log,chromaticity");
@@ -192,7 +202,9 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
 
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   ValidateFit(problem, options);
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  const int most_threads = tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
+                                            : most_threads);
   return arena.execute([&] { return Solve(material, problem, options); });
 }
 

@@ -71,7 +71,8 @@ class TinyLm {
         cholesky_(static_cast<int>(best->size())) {}
 
   StageResult Run() {
-    if (!objective_->Linearize(x_.data(), &at_)) Fail("the cost isn't finite at the first weights");
+    if (!objective_->Linearize(x_.data(), &at_))
+      Fail("the cost isn't finite at the first weights: check the terms' weights and loss_scale");
     StepJudge judge(at_.cost);
     result_.cost = at_.cost;
     FixScale();
@@ -98,8 +99,8 @@ class TinyLm {
       if (cost <= judge.least()) Keep(cost);
       GrowRadius(quality);
       if (change <= tolerated) {
-        Stop(Termination::kConverged,
-             StrCat("|cost change| / cost: ", change / at_.cost, " <= ", options_.function_tolerance));
+        Stop(Termination::kConverged, StrCat("|cost change| / cost: ", change / at_.cost,
+                                             " <= ", options_.function_tolerance));
         break;
       }
     }
@@ -112,7 +113,7 @@ class TinyLm {
       return Stop(Termination::kInterrupted, "the user stopped it");
     }
     if (result_.iterations >= options_.max_iterations) {
-      return Stop(Termination::kMaxIterations, StrCat(result_.iterations, " iterations"));
+      return Stop(Termination::kMaxIterations, "the iterations are used up");
     }
     if (options_.seconds_left && options_.seconds_left() <= 0.0) {
       return Stop(Termination::kMaxSeconds, "the time is used up");
@@ -129,12 +130,13 @@ class TinyLm {
   // When the radius is spent, or the cost moves by no more than rounding makes it.
   bool Stalled(double change) {
     if (radius_ < kSmallestRadius) {
-      Stop(Termination::kConverged, StrCat("trust region radius ", radius_, " < ", kSmallestRadius));
+      Stop(Termination::kConverged,
+           StrCat("trust region radius ", radius_, " < ", kSmallestRadius));
       return true;
     }
     if (change <= options_.function_tolerance * at_.cost) {
-      Stop(Termination::kConverged,
-           StrCat("|cost change| / cost: ", change / at_.cost, " <= ", options_.function_tolerance));
+      Stop(Termination::kConverged, StrCat("|cost change| / cost: ", change / at_.cost,
+                                           " <= ", options_.function_tolerance));
       return true;
     }
     return false;
@@ -153,8 +155,8 @@ class TinyLm {
     for (std::size_t i = 0; i < x_.size(); ++i) scale_[i] = 1.0 / (1.0 + std::sqrt(Diagonal(i)));
   }
 
-  // step = -(A + D)^-1 g, trial = x + step. False if A + D isn't positive definite or the step isn't
-  // finite. predicted: the decrease of the cost that the linear model promises, > 0.
+  // step = -(A + D)^-1 g, trial = x + step. False if A + D isn't positive definite or the step
+  // isn't finite. predicted: the decrease of the cost that the linear model promises, > 0.
   bool ComputeStep(double* predicted) {
     const std::size_t p = x_.size();
     std::vector<double> damping(p);

@@ -1,5 +1,8 @@
 #include "pbnbrdf/base/files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include "test_util.h"
 
 namespace pbnbrdf {
@@ -34,6 +37,18 @@ TEST(Files, AFailedWriteLeavesNothing) {
   WriteBytes(folder / "occupied/file", "1");
   EXPECT_THAT(ErrorOf([&] { WriteFile(folder / "occupied", "1"); }), HasSubstr("cannot write"));
   EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(Files, APipeStaysOne) {
+  TemporaryFolder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const int reader = open(path.c_str(), O_RDONLY | O_NONBLOCK);
+  WriteFile(path, "bytes");
+  char buffer[16];
+  EXPECT_EQ(read(reader, buffer, sizeof(buffer)), 5);
+  close(reader);
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
 }
 
 TEST(Files, CheckWritableForeseesFailure) {

@@ -7,7 +7,8 @@ namespace pbnbrdf {
 namespace {
 
 // The albedo of a microfacet lobe by a grid over the distribution of facet normals: u uniform with
-// tan^2 theta_h = alpha^2 u / (1 - u), so that the sharp D drops out. Independent of AlbedoQuadrature.
+// tan^2 theta_h = alpha^2 u / (1 - u), so that the sharp D drops out. Independent of
+// AlbedoQuadrature.
 double GgxAlbedo(const Brdf& brdf, double alpha, double theta_i) {
   constexpr int kU = 2000, kPhi = 1000;
   const Vec3 wi = FromSpherical(theta_i, 0.0);
@@ -46,7 +47,8 @@ TEST(DirectionalAlbedo, SharpGgxAgreesWithAnIndependentIntegration) {
   const GgxBrdf metal({0.8, 0.8, 0.8}, kAlpha);
   for (double degrees : {0.0, 30.0, 60.0, 80.0}) {
     const double theta_i = degrees * kPi / 180;
-    EXPECT_NEAR(DirectionalAlbedo(metal, theta_i, 64, 32)[0], GgxAlbedo(metal, kAlpha, theta_i), 1e-3)
+    EXPECT_NEAR(DirectionalAlbedo(metal, theta_i, 64, 32)[0], GgxAlbedo(metal, kAlpha, theta_i),
+                1e-3)
         << degrees;
   }
 }

@@ -108,7 +108,8 @@ TEST(Merl, InvalidBinsDontLeak) {
     EXPECT_NEAR(ValueAt(table, PairAt(h, 19.6, 29.3))[0], 1.0, 1e-12);
     EXPECT_NEAR(ValueAt(table, PairAt(h, 20.6, 30.3))[0], 1.0, 1e-12);
   }
-  for (const BrdfSample& s : DrawSamples(table, SampleSet::kTraining, Sampling::kUniform, 5000, 1)) {
+  for (const BrdfSample& s :
+       DrawSamples(table, SampleSet::kTraining, Sampling::kUniform, 5000, 1)) {
     EXPECT_TRUE(table.IsKnown(s.pair));
   }
 }

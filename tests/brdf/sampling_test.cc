@@ -48,7 +48,8 @@ TEST(Sampling, TrainingAndHeldOutSetsAreDisjointEvenForOneSeed) {
 }
 
 TEST(Sampling, UniformIsUniformInThetaH) {
-  // Of the known angles, those with theta_d < 0.1 are nearly all: 8 equal bins of theta_h below 1.2.
+  // Of the known angles, those with theta_d < 0.1 are nearly all: 8 equal bins of theta_h below
+  // 1.2.
   int bins[8] = {}, total = 0;
   for (const auto& s : DrawSamples(kGrey, SampleSet::kHeldOut, Sampling::kUniform, 200000, 1)) {
     const RusinkiewiczAngles a = ToAngles(s.pair);
@@ -80,10 +81,9 @@ TEST(Sampling, ValuesAreThoseOfTheBrdf) {
 }
 
 TEST(Sampling, SaysSoWhenNothingIsKnown) {
-  EXPECT_THAT(ErrorOf([] {
-                DrawSamples(UnknownBrdf(), SampleSet::kTraining, Sampling::kUniform, 10, 1);
-              }),
-              testing::HasSubstr("too little data: 0 of"));
+  EXPECT_THAT(
+      ErrorOf([] { DrawSamples(UnknownBrdf(), SampleSet::kTraining, Sampling::kUniform, 10, 1); }),
+      testing::HasSubstr("too little data: 0 of"));
 }
 
 }  // namespace

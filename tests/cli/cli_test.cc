@@ -32,7 +32,8 @@ class Cli : public testing::Test {
     FILE* pipe = popen(command.c_str(), "r");
     std::string out;
     std::array<char, 4096> buffer;
-    while (std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) out.append(buffer.data(), n);
+    while (std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+      out.append(buffer.data(), n);
     const int status = pclose(pipe);
     EXPECT_TRUE(WIFEXITED(status)) << "crashed: " << arguments;
     return {WEXITSTATUS(status), out, ReadFile(folder_ / "stderr", 1 << 20)};
@@ -117,15 +118,19 @@ TEST_F(Cli, BadMaterialsExitWith1) {
   ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, expected 90 x 90 x 180");
   WriteBytes(Path("bad.safetensors"), std::string(100, '\xff'));
   ExpectError(fit(Path("bad.safetensors")), 1, "bad.safetensors: not a safetensors file");
-  ExpectError("tabulate --material=" + Path("none.binary") + " --out=" + Path("out"), 1, "no such file");
-  ExpectError("eval --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1, "no such file");
+  ExpectError("tabulate --material=" + Path("none.binary") + " --out=" + Path("out"), 1,
+              "no such file");
+  ExpectError("eval --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1,
+              "no such file");
   ExpectError("info " + Path("none.binary"), 1, "no such file");
 }
 
 TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
-  ExpectError("fit --material=builtin:satin-gold --out=" + Path("none/x"), 1, "x: cannot write: no folder");
-  ExpectError("fit --material=builtin:satin-gold --out=" + Path("out") + " --summary=" + Path("none/s"),
-              1, "s: cannot write");
+  ExpectError("fit --material=builtin:satin-gold --out=" + Path("none/x"), 1,
+              "x: cannot write: no folder");
+  ExpectError(
+      "fit --material=builtin:satin-gold --out=" + Path("out") + " --summary=" + Path("none/s"), 1,
+      "s: cannot write");
   ExpectError("tabulate --material=builtin:satin-gold --out=" + Path(""), 1, "is a folder");
 }
 
@@ -134,7 +139,8 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
   const Result fit = Run("fit " + material + kQuick + "--seed=7 --out=" + Path("a.safetensors") +
                          " --summary=" + Path("a.json") + " --trace=" + Path("a.csv"));
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(ReadFile(Path("a.csv"), 1 << 20), StartsWith("iteration,seconds,cost,heldout_error\n0,"));
+  EXPECT_THAT(ReadFile(Path("a.csv"), 1 << 20),
+              StartsWith("iteration,seconds,cost,heldout_error\n0,"));
   EXPECT_EQ(fit.err, "");
   EXPECT_THAT(fit.out, HasSubstr("mean_abs_log_error"));
   const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
@@ -147,8 +153,8 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
   EXPECT_EQ(summary["hcl"], 0.0);
 
   WriteBytes(Path("again.flags"), summary["problem"]);
-  const Result again = Run("fit --quiet --flagfile=" + Path("again.flags") + " --threads=1 --out=" +
-                           Path("b.safetensors"));
+  const Result again = Run("fit --quiet --flagfile=" + Path("again.flags") +
+                           " --threads=1 --out=" + Path("b.safetensors"));
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(again.out, "");
   EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights(),
@@ -160,15 +166,16 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
 }
 
 TEST_F(Cli, TheReferencePathFitsToo) {
-  const Result fit = Run("fit --material=builtin:satin-gold --jacobian=autodiff --terms=log" + kQuick +
-                         "--samples=50 --out=" + Path("a.safetensors"));
+  const Result fit = Run("fit --material=builtin:satin-gold --jacobian=autodiff --terms=log" +
+                         kQuick + "--samples=50 --out=" + Path("a.safetensors"));
   EXPECT_EQ(fit.status, 0) << fit.err;
 }
 
 TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
   const std::string material = " --material=builtin:satin-gold";
   ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
-  const Result eval = Run("eval --json --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
+  const Result eval =
+      Run("eval --json --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
   ASSERT_EQ(eval.status, 0) << eval.err;
   const json measures = json::parse(eval.out);
   std::vector<std::string> keys;
@@ -176,9 +183,9 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
     keys.push_back(key);
     EXPECT_TRUE(value.is_number()) << key;
   }
-  EXPECT_THAT(keys, testing::UnorderedElementsAre(
-                        "mean_abs_log_error", "rmse", "hrl", "hcl", "max_directional_albedo", "eal",
-                        "chromaticity_error", "parameters", "samples"));
+  EXPECT_THAT(keys, testing::UnorderedElementsAre("mean_abs_log_error", "rmse", "hrl", "hcl",
+                                                  "max_directional_albedo", "eal",
+                                                  "chromaticity_error", "parameters", "samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
   const Result text = Run("eval --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
@@ -186,17 +193,24 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
 }
 
 TEST_F(Cli, ANetworkIsAMaterialToo) {
-  ASSERT_EQ(Run("fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors")).status, 0);
-  EXPECT_EQ(Run("tabulate --material=" + Path("a.safetensors") + " --out=" + Path("a.binary")).status, 0);
+  ASSERT_EQ(
+      Run("fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors")).status,
+      0);
+  EXPECT_EQ(
+      Run("tabulate --material=" + Path("a.safetensors") + " --out=" + Path("a.binary")).status, 0);
   EXPECT_THAT(Run("info " + Path("a.binary")).out, HasSubstr("1111326 of 1458000 bins valid"));
-  EXPECT_EQ(Run("fit --material=" + Path("a.safetensors") + kQuick + "--out=" + Path("b.safetensors")).status, 0);
+  EXPECT_EQ(
+      Run("fit --material=" + Path("a.safetensors") + kQuick + "--out=" + Path("b.safetensors"))
+          .status,
+      0);
 }
 
 TEST_F(Cli, ValuesAppendsToWhatItReads) {
-  WriteBytes(Path("pairs.csv"),
-             "name,theta_i,phi_i,theta_o,phi_o\na,0.3,0,0.5,1\nb,0.3,0,2,1\n");
+  WriteBytes(Path("pairs.csv"), "name,theta_i,phi_i,theta_o,phi_o\na,0.3,0,0.5,1\nb,0.3,0,2,1\n");
   ASSERT_EQ(Run("values --material=builtin:spectralon --directions=" + Path("pairs.csv") +
-                " --out=" + Path("values.csv")).status, 0);
+                " --out=" + Path("values.csv"))
+                .status,
+            0);
   const std::string f = FormatFullPrecision(0.99 / kPi);
   EXPECT_EQ(ReadFile(Path("values.csv"), 1 << 20),
             StrCat("name,theta_i,phi_i,theta_o,phi_o,r,g,b\na,0.3,0,0.5,1,", f, ",", f, ",", f,
@@ -215,17 +229,20 @@ TEST_F(Cli, BadDirectionsAreNamed) {
   const auto values = [&](const std::string& csv, const std::string& message) {
     WriteBytes(Path("pairs.csv"), csv);
     ExpectError("values --material=builtin:spectralon --directions=" + Path("pairs.csv") +
-                    " --out=" + Path("out"), 1, message);
+                    " --out=" + Path("out"),
+                1, message);
   };
   values("", "pairs.csv: the first line must name the columns theta_i,phi_i,theta_o,phi_o");
   values("theta_i,phi_i,theta_o\n", "the first line must name the columns");
   values("theta_i,phi_i,theta_o,phi_o\n1,2,3\n", "line 2: 3 columns, expected 4");
-  values("theta_i,phi_i,theta_o,phi_o\n1,2,3,4\n\n1,2,x,4\n", "line 4, theta_o: 'x' is not a finite");
+  values("theta_i,phi_i,theta_o,phi_o\n1,2,3,4\n\n1,2,x,4\n",
+         "line 4, theta_o: 'x' is not a finite");
   values("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,0,0,0,1\n", "line 2: a direction has no length");
 }
 
 TEST_F(Cli, ShippedProblemsFit) {
-  for (const char* name : {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best", "nbrdf_adam"}) {
+  for (const char* name :
+       {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best", "nbrdf_adam"}) {
     const std::string flags = StrCat("--flagfile=", PBNBRDF_PROBLEMS, "/", name, ".flags");
     const Result fit = Run("fit " + flags + " --material=builtin:satin-gold --samples=300" +
                            " --max_iterations=2 --out=" + Path("a.safetensors"));
@@ -240,10 +257,35 @@ TEST_F(Cli, FlagfileErrorsNameTheFile) {
   ExpectError("fit --flagfile=" + Path("none.flags") + " --out=" + Path("out"), 1, "no such file");
 }
 
+TEST_F(Cli, OddOutputsAreHandled) {
+  const std::string fit = "fit --material=builtin:satin-gold" + kQuick;
+  ExpectError(fit + "--out=" + Path("out") + " --summary=" + Path("out"), 2, "two outputs at once");
+  ExpectError(fit + "--out=" + Path(std::string(300, 'a')), 1, "cannot write: File name too long");
+  ExpectError(fit + "--out=" + Path("out") + " --hidden=256,256", 2,
+              "--hidden: makes 68355 weights");
+  // A link stays a link.
+  WriteBytes(Path("target"), "old");
+  std::filesystem::create_symlink(Path("target"), Path("link"));
+  ASSERT_EQ(Run(fit + "--out=" + Path("link")).status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(Path("link")));
+  EXPECT_EQ(NeuralBrdf::Read(Path("target")).weights().size(), 53u);
+}
+
+TEST_F(Cli, NamesThatAreNotUtf8AreHandled) {
+  ASSERT_EQ(Run("tabulate --material=builtin:satin-gold --out=" + Path("\xff.binary")).status, 0);
+  EXPECT_EQ(Run("fit --material=" + Path("\xff.binary") + kQuick +
+                "--out=" + Path("a.safetensors") + " --summary=" + Path("a.json"))
+                .status,
+            0);
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights().size(), 53u);
+}
+
 TEST_F(Cli, InterruptKeepsTheBestNetworkSoFar) {
-  const Result result = Run("fit --material=builtin:satin-gold --max_iterations=100000 "
-                            "--function_tolerance=0 --out=" + Path("a.safetensors") +
-                            " --summary=" + Path("a.json") + " & pid=$!; sleep 3; kill -INT $pid; wait $pid");
+  const Result result =
+      Run("fit --material=builtin:satin-gold --max_iterations=100000 "
+          "--function_tolerance=0 --out=" +
+          Path("a.safetensors") + " --summary=" + Path("a.json") +
+          " & pid=$!; sleep 3; kill -INT $pid; wait $pid");
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights().size(), 675u);
   EXPECT_EQ(json::parse(ReadFile(Path("a.json"), 1 << 20))["termination"], "interrupted");

@@ -73,9 +73,12 @@ TYPED_TEST(Kernels, TanhIsAsAccurateAsStated) {
 
 TYPED_TEST(Kernels, PairProductsSumOverRows) {
   using T = TypeParam;
-  for (auto [na, nb, rows, symmetric] :
-       {std::tuple(21, 21, 3, true), {21, 3, 4, false}, {7, 22, 1, false}, {1, 1, 1, true},
-        {3, 3, 3, true}, {33, 17, 2, false}}) {
+  for (auto [na, nb, rows, symmetric] : {std::tuple(21, 21, 3, true),
+                                         {21, 3, 4, false},
+                                         {7, 22, 1, false},
+                                         {1, 1, 1, true},
+                                         {3, 3, 3, true},
+                                         {33, 17, 2, false}}) {
     const int a_stride = Padded(na), b_stride = Padded(nb);
     const auto a = Random<T>(kBatch * rows * a_stride + kPad, 5);
     const auto b = symmetric ? a : Random<T>(kBatch * rows * b_stride + kPad, 6);
@@ -119,7 +122,8 @@ TYPED_TEST(Kernels, AddTransposedProductAdds) {
 
 TYPED_TEST(Kernels, AddRowProductsAdds) {
   using T = TypeParam;
-  for (auto [p, q, size] : {std::tuple(1, 1, 1), {4, 4, 128}, {5, 7, 31}, {21, 22, 128}, {3, 9, 0}}) {
+  for (auto [p, q, size] :
+       {std::tuple(1, 1, 1), {4, 4, 128}, {5, 7, 31}, {21, 22, 128}, {3, 9, 0}}) {
     const int stride = size + 3;
     const auto x = Random<T>(p * stride, 9), y = Random<T>(q * stride, 10);
     std::vector<T> c(p * (q + 1), T(0.5));

@@ -54,8 +54,8 @@ TEST(HeldOutErrors, OfAMaterialAgainstItselfAreZero) {
 
 TEST(HeldOutErrors, OfTwoLambertiansAreBounded) {
   const double a = 0.4 / kPi, b = 0.8 / kPi;
-  const HeldOutErrors errors = MeasureErrors(LambertBrdf({0.4, 0.4, 0.4}),
-                                             LambertBrdf({0.8, 0.8, 0.8}), 20000, /*seed=*/1);
+  const HeldOutErrors errors =
+      MeasureErrors(LambertBrdf({0.4, 0.4, 0.4}), LambertBrdf({0.8, 0.8, 0.8}), 20000, /*seed=*/1);
   EXPECT_GT(errors.mean_abs_log_error, 0.0);
   EXPECT_LT(errors.mean_abs_log_error, std::log1p(b) - std::log1p(a));
   EXPECT_LT(errors.rmse, b - a);

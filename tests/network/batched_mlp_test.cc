@@ -110,7 +110,9 @@ TEST_P(BatchedMlpTest, SingleAgreesWithDouble) {
 
 INSTANTIATE_TEST_SUITE_P(Activations, BatchedMlpTest,
                          testing::Values(Activation::kTanh, Activation::kRelu),
-                         [](const auto& test) { return std::string(NameOf(kActivations, test.param)); });
+                         [](const auto& test) {
+                           return std::string(NameOf(kActivations, test.param));
+                         });
 
 }  // namespace
 }  // namespace pbnbrdf

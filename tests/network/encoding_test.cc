@@ -26,8 +26,8 @@ TEST(Encoding, IsWhatTheFormulasSay) {
   const double th = 0.5, td = 0.8, pd = 1.2;
   const DirectionPair pair = FromAngles({.theta_h = th, .theta_d = td, .phi_d = pd, .phi_h = 3.0});
   const double sd = std::sin(td);
-  const std::array<double, 6> cartesian = {std::sin(th),       0.0, std::cos(th), sd * std::cos(pd),
-                                           sd * std::sin(pd), std::cos(td)};
+  const std::array<double, 6> cartesian = {
+      std::sin(th), 0.0, std::cos(th), sd * std::cos(pd), sd * std::sin(pd), std::cos(td)};
   const std::array<double, 6> reciprocal = {
       std::sin(th), 0.0, std::cos(th), sd * std::cos(2 * pd), sd * std::sin(2 * pd), std::cos(td)};
   const std::array<double, 6> multiscale = {std::sin(th),

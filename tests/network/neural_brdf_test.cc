@@ -29,7 +29,8 @@ TEST(NeuralBrdf, ReciprocityIsExactToTheBit) {
       std::vector<Rgb> there(pairs.size()), back(pairs.size());
       network.EvaluateUnclipped(pairs, there);
       network.EvaluateUnclipped(swapped, back);
-      for (std::size_t n = 0; n < pairs.size(); ++n) ASSERT_EQ(there[n], back[pairs.size() - 1 - n]);
+      for (std::size_t n = 0; n < pairs.size(); ++n)
+        ASSERT_EQ(there[n], back[pairs.size() - 1 - n]);
     }
   }
 }
@@ -92,7 +93,8 @@ TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {
   EXPECT_THAT(read([](auto& f) { f.tensors.erase("fc2.weight"); }), HasSubstr("5 tensors"));
   EXPECT_THAT(read([](auto& f) { f.tensors["fc2.weight"] = f.tensors["fc1.weight"]; }),
               HasSubstr("tensor fc2.weight has another shape than 21 x 21"));
-  EXPECT_THAT(read([](auto& f) { f.tensors["x"] = f.tensors["fc1.bias"]; }), HasSubstr("7 tensors"));
+  EXPECT_THAT(read([](auto& f) { f.tensors["x"] = f.tensors["fc1.bias"]; }),
+              HasSubstr("7 tensors"));
 }
 
 TEST(NeuralBrdf, RefusesWeightsThatDontFit) {

@@ -46,8 +46,8 @@ class CondensedTest : public testing::TestWithParam<Activation> {
     const auto blocks = shape.Blocks<const double>(weights_.data());
     ASSERT_TRUE(block.Evaluate(blocks.data(), residuals->data(), jacobians.data()));
     for (int l = 0; l < shape.num_layers(); ++l) {
-      jacobian->middleCols(shape.offset(l), shape.block_size(l)) = Eigen::Map<RowMajor>(
-          jacobians[l], block.num_residuals(), shape.block_size(l));
+      jacobian->middleCols(shape.offset(l), shape.block_size(l)) =
+          Eigen::Map<RowMajor>(jacobians[l], block.num_residuals(), shape.block_size(l));
     }
   }
 
@@ -106,7 +106,9 @@ TEST_P(CondensedTest, RefusesWhatIsNotFinite) {
 
 INSTANTIATE_TEST_SUITE_P(Activations, CondensedTest,
                          testing::Values(Activation::kTanh, Activation::kRelu),
-                         [](const auto& test) { return std::string(NameOf(kActivations, test.param)); });
+                         [](const auto& test) {
+                           return std::string(NameOf(kActivations, test.param));
+                         });
 
 }  // namespace
 }  // namespace pbnbrdf

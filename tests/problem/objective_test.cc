@@ -116,7 +116,8 @@ Linearization Reference(const Case& c) {
   return at;
 }
 
-// The largest deviations, in units of what rounding is relative to: the cost; |J_i| |r|; |J_i| |J_j|.
+// The largest deviations, in units of what rounding is relative to: the cost; |J_i| |r|; |J_i|
+// |J_j|.
 struct Deviation {
   double cost = 0.0, gradient = 0.0, hessian = 0.0;
 };
@@ -135,8 +136,8 @@ Deviation Compare(const Linearization& a, const Linearization& b) {
                                                   (scale_i * std::sqrt(2.0 * b.cost)));
     for (std::size_t j = 0; j < p; ++j) {
       const double scale = scale_i * std::max(norm(j), 1e-6 * largest);
-      worst.hessian = std::max(worst.hessian,
-                               std::abs(a.hessian[i * p + j] - b.hessian[i * p + j]) / scale);
+      worst.hessian =
+          std::max(worst.hessian, std::abs(a.hessian[i * p + j] - b.hessian[i * p + j]) / scale);
     }
   }
   return worst;
@@ -150,9 +151,8 @@ class ObjectiveTest : public testing::TestWithParam<Case> {
     const auto objective = MakeObjective(problem, Samples(problem));
     Linearization at;
     tbb::task_arena arena(threads);
-    EXPECT_TRUE(arena.execute([&] {
-      return objective->Linearize(GetParam().weights.data(), &at);
-    }));
+    EXPECT_TRUE(
+        arena.execute([&] { return objective->Linearize(GetParam().weights.data(), &at); }));
     EXPECT_NEAR(objective->Cost(GetParam().weights.data()), at.cost, 1e-12 * at.cost);
     return at;
   }

@@ -1,5 +1,5 @@
-// Each term: the formula of its equation, and its gradient through the whole network against numeric
-// differences (Ridders' method, ceres::GradientChecker).
+// Each term: the formula of its equation, and its gradient through the whole network against
+// numeric differences (Ridders' method, ceres::GradientChecker).
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/gradient_checker.h>
@@ -60,8 +60,8 @@ TEST(LogResidual, IsEquation6) {
   double r[3];
   LogResidual(kValue, kCos)(z, r);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(r[c],
-                std::log(1 + kValue[c] * kCos) - std::log(1 + (std::exp(z[c]) - 1) * kCos), 1e-14);
+    EXPECT_NEAR(r[c], std::log(1 + kValue[c] * kCos) - std::log(1 + (std::exp(z[c]) - 1) * kCos),
+                1e-14);
   }
 }
 

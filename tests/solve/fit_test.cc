@@ -141,7 +141,8 @@ TEST(FitBrdf, AdamComesNearAndIsTheSameForAnyNumberOfThreads) {
   const Fit start = FitBrdf(*gold, problem, options);
   EXPECT_LT(MeanAbsDifference(*gold, two.network), 0.3 * MeanAbsDifference(*gold, start.network));
   problem.energy_weight = 1.0;
-  EXPECT_THAT(ErrorOf([&] { FitBrdf(*gold, problem, options); }), HasSubstr("adam takes no energy term"));
+  EXPECT_THAT(ErrorOf([&] { FitBrdf(*gold, problem, options); }),
+              HasSubstr("adam takes no energy term"));
 }
 
 TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
@@ -151,7 +152,8 @@ TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
   for (int c = 1; c <= 3; ++c) weights[shape.offset(1) + 3 * c - 1] = std::log1p(1.2 / kPi);
   const NeuralBrdf too_bright(shape, weights);
   FitProblem problem = SmallProblem();
-  problem.loss = Loss::kL2;  // a robust loss would rather be right at most samples and break out at some
+  problem.loss =
+      Loss::kL2;  // a robust loss would rather be right at most samples and break out at some
   EXPECT_FALSE(FitBrdf(too_bright, problem, {}).summary.energy_stage);
   problem.energy_weight = 100.0;
   const Fit fit = FitBrdf(too_bright, problem, {});
@@ -204,7 +206,8 @@ TEST(FitBrdf, BadOptionsAreNamed) {
     change(&options);
     return ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options); });
   };
-  EXPECT_THAT(error([](FitOptions* o) { o->max_iterations = -1; }), HasSubstr("max_iterations = -1"));
+  EXPECT_THAT(error([](FitOptions* o) { o->max_iterations = -1; }),
+              HasSubstr("max_iterations = -1"));
   EXPECT_THAT(error([](FitOptions* o) { o->max_seconds = 0; }), HasSubstr("max_seconds = 0"));
   EXPECT_THAT(error([](FitOptions* o) { o->threads = -2; }), HasSubstr("threads = -2"));
 }

@@ -13,8 +13,9 @@ std::uintmax_t FileSize(const std::string& path);
 // The file's bytes. Throws Error if it can't be read or is larger than `limit` bytes.
 std::string ReadFile(const std::string& path, std::uintmax_t limit);
 
-// Writes to "<path>.<process id>.part" and renames that to `path`, so that `path` holds either its
-// old content or all of the new. "-" is standard output. Throws Error; the partial file is removed.
+// Writes to a temporary file in the same folder and renames that to `path`, so that `path` holds
+// either its old content or all of the new; a link, device or pipe stays one. "-" is standard output.
+// Throws Error; the temporary file is removed.
 void WriteFile(const std::string& path, std::string_view content);
 
 // Throws Error unless WriteFile(path, ...) has a folder to write to that grants it: asked before a

@@ -60,7 +60,7 @@ class WardBrdf final : public PointwiseBrdf {
 // [1] B. Walter, S. Marschner, H. Li, K. Torrance. Microfacet Models for Refraction through Rough
 //     Surfaces. EGSR 2007.
 // [2] C. Schlick. An Inexpensive BRDF Model for Physically-based Rendering. Eurographics 1994.
-// [3] M. Ashikhmin, P. Shirley. An Anisotropic Phong BRDF Model. Journal of Graphics Tools 5(2), 2000.
+// [3] M. Ashikhmin, P. Shirley. An Anisotropic Phong BRDF Model. J. Graphics Tools 5(2), 2000.
 class GgxBrdf final : public PointwiseBrdf {
  public:
   // alpha > 0: width of the distribution of facet normals. rho_d = 0 for metals.

@@ -1,6 +1,6 @@
 // half_diff.h: direction pairs <-> half and difference vectors [1]. Angles in radians.
 //
-//   h = normalize(wi + wo) at (theta_h, phi_h);  d = Ry(-theta_h) Rz(-phi_h) wi at (theta_d, phi_d).
+//   h = normalize(wi + wo) at (theta_h, phi_h),  d = Ry(-theta_h) Rz(-phi_h) wi at (theta_d, phi_d)
 //
 // Exchanging wi and wo sends (d.x, d.y, d.z) to (-d.x, -d.y, d.z), that is phi_d to phi_d + pi, and
 // here to the last bit: d.z = |wi + wo| / 2 and the tangential part of d is that of (wi - wo) / 2.

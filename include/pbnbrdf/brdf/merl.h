@@ -8,7 +8,7 @@
 //
 // and phi_d and phi_d + pi are the same by reciprocity. A bin with a negative channel is invalid.
 //
-// [1] W. Matusik, H. Pfister, M. Brand, L. McMillan. A Data-Driven Reflectance Model. ACM TOG 22(3),
+// [1] W. Matusik, H. Pfister, M. Brand, L. McMillan. A Data-Driven Reflectance Model. ACM TOG 22,
 //     2003.
 #pragma once
 

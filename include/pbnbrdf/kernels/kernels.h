@@ -1,5 +1,5 @@
-// kernels.h: the inner loops, for batches of kBatch samples, in single and double precision. Each is
-// compiled for several instruction sets, and the best one that the processor has is chosen when
+// kernels.h: the inner loops, for batches of kBatch samples, in single and double precision. Each
+// is compiled for several instruction sets, and the best one that the processor has is chosen when
 // it is called. T is float or double.
 //
 // Two layouts: by feature, x[i * kBatch + n], for passes through a network; by sample,
@@ -16,7 +16,8 @@ inline constexpr int kBatch = 128;
 inline constexpr int kPad = 16;
 constexpr int Padded(int size) { return (size + kPad - 1) / kPad * kPad; }
 
-// y = W x + b. By feature: x in x kBatch, y out x kBatch. layer: [W | b], row-major, out x (in + 1).
+// y = W x + b. By feature: x in x kBatch, y out x kBatch. layer: [W | b], row-major, out x (in +
+// 1).
 template <typename T>
 void Dense(const T* layer, int out, int in, const T* x, T* y);
 
@@ -41,9 +42,9 @@ template <typename T>
 void PairProducts(const T* a, int na, const T* b, int nb, int rows, bool symmetric, T* out,
                   int out_stride);
 
-// c[i][j] += sum over n < kBatch of x[n][i] y[n][j]: x by sample with p columns, y with q. The strides
-// must cover Padded(p) and Padded(q), c Padded(p) rows of stride Padded(q) doubles. Sums of kBatch
-// terms are in precision T.
+// c[i][j] += sum over n < kBatch of x[n][i] y[n][j]: x by sample with p columns, y with q. The
+// strides must cover Padded(p) and Padded(q), c Padded(p) rows of stride Padded(q) doubles. Sums of
+// kBatch terms are in precision T.
 template <typename T>
 void AddTransposedProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,
                           double* c);

@@ -39,7 +39,8 @@ class BatchedMlp {
   // gradient += scale * the sum over samples of the gradient with respect to all weights, of row 0.
   void AddWeightGradient(T scale, T* gradient) const;
 
-  // Makes what Backward left available by sample, kPad readable elements behind the last (kernels.h):
+  // Makes what Backward left available by sample, kPad readable elements behind the last
+  // (kernels.h):
   void Transpose();
 
   //   layer_input: in(layer) values and 1, stride Padded(in + 1).

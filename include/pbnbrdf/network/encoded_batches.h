@@ -15,7 +15,8 @@ template <typename T>
 class EncodedBatches {
  public:
   void Reserve(std::size_t pairs) {
-    inputs_.reserve((pairs + kernels::kBatch - 1) / kernels::kBatch * kEncodedSize * kernels::kBatch);
+    inputs_.reserve((pairs + kernels::kBatch - 1) / kernels::kBatch * kEncodedSize *
+                    kernels::kBatch);
   }
 
   void Add(const std::array<double, kEncodedSize>& input) {
@@ -32,7 +33,9 @@ class EncodedBatches {
   std::size_t num_batches() const { return (size_ + kernels::kBatch - 1) / kernels::kBatch; }
 
   // The inputs of a batch, kEncodedSize x kBatch; those behind the last pair are zeros.
-  const T* batch(std::size_t b) const { return inputs_.data() + b * kEncodedSize * kernels::kBatch; }
+  const T* batch(std::size_t b) const {
+    return inputs_.data() + b * kEncodedSize * kernels::kBatch;
+  }
 
   // How many pairs batch b holds.
   int batch_size(std::size_t b) const {

@@ -15,8 +15,9 @@ enum class Encoding {
   kCartesian,
   // (hx, hy, hz, (dx^2 - dy^2) / s, 2 dx dy / s, dz): phi_d doubled, section 4.1 of the paper.
   kReciprocal,
-  // (sin th, sqrt(2 th / pi), log(th + 0.001) / 3, dx^2 - dy^2, 2 dx dy, dz), th = theta_h: reciprocal
-  // too, smooth where s = 0, and with theta_h on three scales, which resolves lobes of any width.
+  // (sin th, sqrt(2 th / pi), log(th + 0.001) / 3, dx^2 - dy^2, 2 dx dy, dz), th = theta_h:
+  // reciprocal too, smooth where s = 0, and with theta_h on three scales, which resolves lobes of
+  // any width.
   kMultiscale,
 };
 

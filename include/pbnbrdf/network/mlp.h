@@ -18,8 +18,8 @@ T Activate(Activation activation, const T& x) {
   return x > T(0.0) ? x : T(0.0);
 }
 
-// The last layer's values z, before the output unit. input: in(0) numbers; layers: a pointer to each
-// layer's block (network_shape.h); z: kChannels numbers.
+// The last layer's values z, before the output unit. input: in(0) numbers; layers: a pointer to
+// each layer's block (network_shape.h); z: kChannels numbers.
 template <typename T>
 void EvaluateMlp(const NetworkShape& shape, const double* input, T const* const* layers, T* z) {
   std::vector<T> from(input, input + shape.in(0)), to;
@@ -37,8 +37,8 @@ void EvaluateMlp(const NetworkShape& shape, const double* input, T const* const*
   std::copy(from.begin(), from.end(), z);
 }
 
-// The output unit: the reflectance while fitting, f^ = expm1(z) > -1, smooth in z. What is evaluated
-// is max(0, f^), as with NBRDF; a clamp has no gradient, so none stands in the fit.
+// The output unit: the reflectance while fitting, f^ = expm1(z) > -1, smooth in z. What is
+// evaluated is max(0, f^), as with NBRDF; a clamp has no gradient, so none stands in the fit.
 template <typename T>
 T Reflectance(const T& z) {
   using std::expm1;

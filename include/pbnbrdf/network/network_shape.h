@@ -1,8 +1,8 @@
 // network_shape.h: the layers of a fully connected network and where their weights lie.
 //
-// Layer l maps sizes[l] values to sizes[l + 1]; its weights are the matrix [W | b], row-major, shape
-// out x (in + 1), bias last: one Ceres parameter block. All layers one after the other make up the
-// vector of weights: a 6-21-21-3 network has blocks of 147, 462 and 66, 675 numbers.
+// Layer l maps sizes[l] values to sizes[l + 1]; its weights are the matrix [W | b], row-major,
+// shape out x (in + 1), bias last: one Ceres parameter block. All layers one after the other make
+// up the vector of weights: a 6-21-21-3 network has blocks of 147, 462 and 66, 675 numbers.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // safetensors.h: the safetensors file format: an 8-byte little-endian header length, a JSON header,
-// {"name": {"dtype", "shape", "data_offsets"}, ..., "__metadata__": {"key": "text"}}, and the tensors'
-// bytes without gaps. Reading one runs no code.
+// {"name": {"dtype", "shape", "data_offsets"}, ..., "__metadata__": {"key": "text"}}, and the
+// tensors' bytes without gaps. Reading one runs no code.
 #pragma once
 
 #include <cstdint>

@@ -5,8 +5,8 @@
 //   residual = [ L^-1 g ; sqrt(2 cost - |L^-1 g|^2) ],   Jacobian = [ L' ; 0 ],
 //
 // whose normal equations, gradient and cost are those of the full problem: Ceres' trust region does
-// what it would have done with all of the residuals, in O(P^2) memory for any number of samples. The
-// root is real: rho is concave with rho(0) = 0, so sum of rho' r^2 <= sum of rho = 2 cost, and
+// what it would have done with all of the residuals, in O(P^2) memory for any number of samples.
+// The root is real: rho is concave with rho(0) = 0, so sum of rho' r^2 <= sum of rho = 2 cost, and
 // |L^-1 g|^2 is the part of the left side that J's range holds.
 #pragma once
 

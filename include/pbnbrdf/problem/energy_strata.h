@@ -14,8 +14,8 @@ namespace pbnbrdf {
 // cos theta_i, at the middle.
 double StratumAngle(int k, int strata);
 
-// 1/2 weight sum over strata k and channels of r^2, r as in residuals/energy_residual.h. The nodes of
-// the quadrature don't move while fitting: they are encoded once.
+// 1/2 weight sum over strata k and channels of r^2, r as in residuals/energy_residual.h. The nodes
+// of the quadrature don't move while fitting: they are encoded once.
 template <typename T>
 class EnergyStrata {
  public:

@@ -1,5 +1,5 @@
-// fit_problem.h: the description of a fit: network, terms, samples. With a material it is a complete
-// least-squares problem: minimise over the network's weights
+// fit_problem.h: the description of a fit: network, terms, samples. With a material it is a
+// complete least-squares problem: minimise over the network's weights
 //
 //   1/2 sum over terms t of weight_t * mean over samples of rho(|r_t|^2)  +  1/2 weight_e |r_e|^2,
 //
@@ -47,17 +47,18 @@ struct FitProblem {
   double energy_weight = 1.0;
 
   Loss loss = Loss::kSoftL1;
-  double loss_scale = 0.001;  // > 0, in units of the residuals: where rho turns from square to linear
+  double loss_scale = 0.001;  // > 0, the residual at which rho turns from square to linear
 
-  // The training samples. A fit starts on the first few of them and takes `growth` times as many each
-  // time that the cost falls slowly, up to all.
+  // The training samples. A fit starts on the first few of them and takes `growth` times as many
+  // each time that the cost falls slowly, up to all.
   Sampling sampling = Sampling::kHighlight;
   std::size_t samples = 10000;
   std::size_t first_samples = 1000;
-  double growth = 3.0;  // > 1
+  double growth = 3.0;     // > 1
   std::uint64_t seed = 1;  // of the samples and of the initial weights
 
-  // The energy term's quadrature: strata of incident angles, equal in solid angle, and nodes for each.
+  // The energy term's quadrature: strata of incident angles, equal in solid angle, and nodes for
+  // each.
   int energy_strata = 16;
   int energy_theta = 64;
   int energy_phi = 32;
@@ -75,7 +76,7 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale);
 
 // Uniform (Glorot and Bengio 2010); the last layer's biases are the mean of log(1 + f) over the
 // samples. shape.num_weights() numbers.
-std::vector<double> InitialWeights(const NetworkShape& shape,
-                                   std::span<const BrdfSample> samples, std::uint64_t seed);
+std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
+                                   std::uint64_t seed);
 
 }  // namespace pbnbrdf

@@ -5,8 +5,8 @@
 
 namespace pbnbrdf {
 
-// After robust weighting (rows scaled by sqrt(rho'), as Ceres' corrector does), with J the Jacobian of
-// all residuals r, P weights:
+// After robust weighting (rows scaled by sqrt(rho'), as Ceres' corrector does), with J the Jacobian
+// of all residuals r, P weights:
 struct Linearization {
   double cost = 0.0;             // fit_problem.h
   std::vector<double> gradient;  // J'r, P

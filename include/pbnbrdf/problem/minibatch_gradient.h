@@ -1,4 +1,5 @@
-// minibatch_gradient.h: the gradient of the papers' own loss on a few samples, for stochastic solvers.
+// minibatch_gradient.h: the gradient of the papers' own loss on a few samples, for stochastic
+// solvers.
 //
 //   mean over samples of  log_weight * mean_c |r_log,c|  +  chromaticity_weight * |r_chromaticity|,
 //
@@ -38,7 +39,7 @@ class MinibatchGradient {
   NetworkShape shape_;
   float log_weight_, chromaticity_weight_;
   std::size_t num_samples_;
-  AlignedVector<float> samples_;  // sample after sample: encoded pair, cos_i, f
+  AlignedVector<float> samples_;                // sample after sample: encoded pair, cos_i, f
   std::vector<std::unique_ptr<Block>> blocks_;  // a kernels::kBatch of the minibatch each
 };
 

@@ -1,14 +1,14 @@
 // normal_equations.h: J'J and J'r of a network's residuals, accumulated batch by batch without ever
 // holding J.
 //
-// The rows of J for the weights of layer l are delta_l x a_l (a_l: the layer's input with 1 appended),
-// so the block of J'J for layers l, m is
+// The rows of J for the weights of layer l are delta_l x a_l (a_l: the layer's input with 1
+// appended), so the block of J'J for layers l, m is
 //
 //   sum over samples n of (sum over rows r of delta_l,r delta_m,r') (x) (a_l a_m'):
 //
 // the sum over rows comes first, and the rest is one tall matrix product of pair products, of which
-// the symmetric halves suffice where l = m. For 675 weights that is 0.35 MFLOP a sample, against 1.4
-// for J'J with three rows. Batches are summed in precision T, the whole in double.
+// the symmetric halves suffice where l = m. For 675 weights that is 0.35 MFLOP a sample, against
+// 1.4 for J'J with three rows. Batches are summed in precision T, the whole in double.
 #pragma once
 
 #include <vector>

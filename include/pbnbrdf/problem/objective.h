@@ -1,5 +1,5 @@
-// objective.h: the cost of a fit, its gradient and its Gauss-Newton matrix at given weights: all that
-// any solver needs to know of a fit.
+// objective.h: the cost of a fit, its gradient and its Gauss-Newton matrix at given weights: all
+// that any solver needs to know of a fit.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// weight_gradient.h: a sum over samples of delta_l x a_l for all layers l: the gradient of a network's
-// weights (batched_mlp.h). Batches are summed in precision T, the whole in double.
+// weight_gradient.h: a sum over samples of delta_l x a_l for all layers l: the gradient of a
+// network's weights (batched_mlp.h). Batches are summed in precision T, the whole in double.
 #pragma once
 
 #include <vector>

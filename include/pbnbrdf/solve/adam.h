@@ -19,9 +19,9 @@ struct AdamOptions {
   void Validate() const;
 };
 
-// An iteration is an epoch: every sample once, in random order (problem.seed). The cost reported is the
-// mean |eq. 6| over some of the training samples. weights: where to start, and on return and in callbacks
-// the last ones, as is usual with Adam. Throws Error if they aren't finite any more.
+// An iteration is an epoch: every sample once, in random order (problem.seed). The cost reported is
+// the mean |eq. 6| over some of the training samples. weights: where to start, and on return and in
+// callbacks the last ones, as is usual with Adam. Throws Error if they aren't finite any more.
 StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> samples,
                          const AdamOptions& adam, const StageOptions& options,
                          std::vector<double>* weights);

@@ -6,9 +6,9 @@
 
 namespace pbnbrdf {
 
-// Levenberg-Marquardt (trust region). `problem`'s parameter blocks lie in a vector of weights that is the
-// caller's: where to start, and on return and in callbacks the best found. Throws Error if Ceres finds no
-// usable step.
+// Levenberg-Marquardt (trust region). `problem`'s parameter blocks lie in a vector of weights that
+// is the caller's: where to start, and on return and in callbacks the best found. Throws Error if
+// Ceres finds no usable step.
 StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options);
 
 // L-BFGS with line search. weights: as above.

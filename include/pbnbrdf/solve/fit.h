@@ -26,9 +26,9 @@ struct FitProgress {
 
 enum class Solver {
   kTinyLm,  // Levenberg-Marquardt on the normal equations (tiny_lm.h)
-  kLm,      // Ceres' Levenberg-Marquardt (ceres_solvers.h): the same steps, at several times the cost
-  kLbfgs,   // Ceres' L-BFGS: cheap iterations, but thousands of them
-  kAdam,    // Adam on minibatches of the papers' own loss (adam.h), without the energy term
+  kLm,  // Ceres' Levenberg-Marquardt (ceres_solvers.h): the same steps, at several times the cost
+  kLbfgs,  // Ceres' L-BFGS: cheap iterations, but thousands of them
+  kAdam,   // Adam on minibatches of the papers' own loss (adam.h), without the energy term
 };
 
 inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
@@ -39,8 +39,8 @@ inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
 struct FitOptions {
   Solver solver = Solver::kTinyLm;
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
-  int max_iterations = 150;          // >= 0, without the energy term, and again with it; Adam: epochs
-  double max_seconds = 3600.0;       // > 0
+  int max_iterations = 150;     // >= 0, without the energy term, and again with it; Adam: epochs
+  double max_seconds = 3600.0;  // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
   AdamOptions adam;                  // of Solver::kAdam
   int threads = 0;                   // 0: as many as the machine has
@@ -54,7 +54,7 @@ struct FitSummary {
   bool energy_stage = false;  // whether an albedo above 1 called for the energy term
   double seconds = 0.0;       // with sampling the material, without reading it or evaluating errors
   Termination termination = Termination::kConverged;
-  std::string message;        // the solver's own words
+  std::string message;  // the solver's own words
 };
 
 struct Fit {
@@ -62,14 +62,15 @@ struct Fit {
   FitSummary summary;
 };
 
-// What FitBrdf checks before it starts. Throws Error if the problem or the options are invalid or don't go
-// together.
+// What FitBrdf checks before it starts. Throws Error if the problem or the options are invalid or
+// don't go together.
 void ValidateFit(const FitProblem& problem, const FitOptions& options);
 
-// The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the same network to the last bit, whatever the number of threads. The energy
-// term joins in a second stage, if the directional albedo of the first stage's network exceeds 1 in a
-// stratum. Throws Error as ValidateFit does, if the material has next to no data, or if the solver
-// finds no usable step.
+// The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
+// same network to the last bit, whatever the number of threads. The energy term joins in a second
+// stage, if the directional albedo of the first stage's network exceeds 1 in a stratum. Throws
+// Error as ValidateFit does, if the material has next to no data, or if the solver finds no usable
+// step.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf

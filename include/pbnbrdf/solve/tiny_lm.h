@@ -1,9 +1,11 @@
 // tiny_lm.h: Levenberg-Marquardt on the normal equations of an Objective.
 //
-// The steps are those of Ceres' trust region [1]; what differs is the linear algebra, which Debian's
-// libceres has compiled for any x86-64: an iteration here costs little more than the Linearization.
+// The steps are those of Ceres' trust region [1]; what differs is the linear algebra, which
+// Debian's libceres has compiled for any x86-64: an iteration here costs little more than the
+// Linearization.
 //
-// [1] S. Agarwal, K. Mierle and others. Ceres Solver, version 2.1; its user guide names the sources,
+// [1] S. Agarwal, K. Mierle and others. Ceres Solver, version 2.1; its user guide names the
+// sources,
 //     foremost K. Madsen, H. Nielsen, O. Tingleff. Methods for Non-Linear Least Squares Problems.
 //     2004 (the radius), and A. Conn, N. Gould, P. Toint. Trust-Region Methods. SIAM 2000, algorithm
 //     10.1.2 (steps that may raise the cost).
