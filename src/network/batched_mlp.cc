@@ -82,14 +82,14 @@ void BatchedMlp<T>::BackwardRow(const T* weights, int row) {
 }
 
 template <typename T>
-void BatchedMlp<T>::AddWeightGradient(T scale, T* gradient) const {
+void BatchedMlp<T>::AddWeightGradient(int row, T* gradient) const {
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
     const int in = shape_.in(layer), out = shape_.out(layer);
     const T* input = layer == 0 ? input_ : activations_[layer - 1].data();
-    const T* delta = deltas_[layer].data();
+    const T* delta = deltas_[layer].data() + row * out * kBatch;
     T* to = gradient + shape_.offset(layer);
-    kernels::AddRowProducts(scale, delta, out, kBatch, input, in, kBatch, kBatch, to, in + 1);
-    kernels::AddRowProducts(scale, delta, out, kBatch, ones_.data(), 1, kBatch, kBatch, to + in,
+    kernels::AddRowProducts(T(1), delta, out, kBatch, input, in, kBatch, kBatch, to, in + 1);
+    kernels::AddRowProducts(T(1), delta, out, kBatch, ones_.data(), 1, kBatch, kBatch, to + in,
                             in + 1);
   }
 }

@@ -8,7 +8,6 @@
 
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/network/mlp.h"
-#include "pbnbrdf/problem/weight_gradient.h"
 
 namespace pbnbrdf {
 namespace {
@@ -104,7 +103,8 @@ template <typename T>
 void EnergyStrata<T>::AlbedoGradients(const T* weights, const Stratum& stratum,
                                       double* gradients) const {
   BatchedMlp<T> mlp(shape_, kChannels);
-  std::vector<WeightGradient<T>> sums(kChannels, WeightGradient<T>(shape_));
+  const int p = shape_.num_weights();
+  AlignedVector<T> batch_gradient(p);
   for (std::size_t b = 0; b < stratum.inputs.num_batches(); ++b) {
     mlp.Forward(weights, stratum.inputs.batch(b));
     for (int c = 0; c < kChannels; ++c) {
@@ -117,15 +117,12 @@ void EnergyStrata<T>::AlbedoGradients(const T* weights, const Stratum& stratum,
       }
     }
     mlp.Backward(weights);
-    mlp.Transpose();
-    for (int l = 0; l < shape_.num_layers(); ++l) {
-      const int stride = kernels::Padded(shape_.out(l));
-      for (int c = 0; c < kChannels; ++c) {
-        sums[c].AddBatch(mlp, l, mlp.delta(l) + c * stride, kChannels * stride);
-      }
+    for (int c = 0; c < kChannels; ++c) {
+      std::fill(batch_gradient.begin(), batch_gradient.end(), T(0));
+      mlp.AddWeightGradient(c, batch_gradient.data());
+      for (int i = 0; i < p; ++i) gradients[c * p + i] += batch_gradient[i];
     }
   }
-  for (int c = 0; c < kChannels; ++c) sums[c].AddTo(gradients + c * shape_.num_weights());
 }
 
 template class EnergyStrata<float>;

@@ -93,7 +93,7 @@ void MinibatchGradient::EvaluateBlock(const float* weights, std::span<const std:
   }
   block->mlp.Backward(weights);
   std::fill(block->gradient.begin(), block->gradient.end(), 0.0f);
-  block->mlp.AddWeightGradient(1.0f, block->gradient.data());
+  block->mlp.AddWeightGradient(0, block->gradient.data());
 }
 
 }  // namespace pbnbrdf

@@ -18,12 +18,17 @@ int ProductStride(int pairs) {
   return (units | 1) * kPad;
 }
 
+void AddAll(const AlignedVector<double>& from, AlignedVector<double>* to) {
+  for (std::size_t i = 0; i < from.size(); ++i) (*to)[i] += from[i];
+}
+
 }  // namespace
 
 template <typename T>
-NormalEquations<T>::NormalEquations(const NetworkShape& shape) : shape_(shape), gradient_(shape) {
+NormalEquations<T>::NormalEquations(const NetworkShape& shape) : shape_(shape) {
   int most_units = 0, most_inputs = 0;
   for (int l = 0; l < shape.num_layers(); ++l) {
+    gradients_.emplace_back(Padded(shape.out(l)) * Padded(shape.in(l) + 1));
     for (int m = l; m < shape.num_layers(); ++m) {
       const int units = PairCount(shape.out(l), shape.out(m), l == m);
       const int inputs = PairCount(shape.in(l) + 1, shape.in(m) + 1, l == m);
@@ -39,7 +44,7 @@ NormalEquations<T>::NormalEquations(const NetworkShape& shape) : shape_(shape), 
 
 template <typename T>
 void NormalEquations<T>::Clear() {
-  gradient_.Clear();
+  for (auto& gradient : gradients_) std::fill(gradient.begin(), gradient.end(), 0.0);
   for (Block& block : blocks_) std::fill(block.sums.begin(), block.sums.end(), 0.0);
 }
 
@@ -64,7 +69,9 @@ void NormalEquations<T>::AddGradient(const BatchedMlp<T>& mlp, const T* residual
         for (int o = 0; o < out; ++o) weighted[o] += residual * delta[o];
       }
     }
-    gradient_.AddBatch(mlp, l, unit_products_.data(), padded);
+    const int columns = shape_.in(l) + 1;
+    kernels::AddTransposedProduct(unit_products_.data(), out, padded, mlp.layer_input(l), columns,
+                                  Padded(columns), gradients_[l].data());
   }
 }
 
@@ -84,16 +91,19 @@ void NormalEquations<T>::AddBlock(const BatchedMlp<T>& mlp, Block* block) {
 
 template <typename T>
 void NormalEquations<T>::Add(const NormalEquations& other) {
-  gradient_.Add(other.gradient_);
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const AlignedVector<double>& from = other.blocks_[b].sums;
-    for (std::size_t i = 0; i < from.size(); ++i) blocks_[b].sums[i] += from[i];
-  }
+  for (std::size_t l = 0; l < gradients_.size(); ++l) AddAll(other.gradients_[l], &gradients_[l]);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) AddAll(other.blocks_[b].sums, &blocks_[b].sums);
 }
 
 template <typename T>
 void NormalEquations<T>::AddTo(double* gradient, double* hessian) const {
-  gradient_.AddTo(gradient);
+  for (int l = 0; l < shape_.num_layers(); ++l) {
+    const int columns = shape_.in(l) + 1;
+    for (int o = 0; o < shape_.out(l); ++o) {
+      const double* from = gradients_[l].data() + o * Padded(columns);
+      for (int i = 0; i < columns; ++i) *gradient++ += from[i];
+    }
+  }
   for (const Block& block : blocks_) Scatter(block, hessian);
 }
 

@@ -277,7 +277,7 @@ class BatchedObjective final : public Objective {
     }
     mlp.Backward(w);
     std::fill(worker->batch_sum.begin(), worker->batch_sum.end(), T(0));
-    mlp.AddWeightGradient(T(1), worker->batch_sum.data());
+    mlp.AddWeightGradient(0, worker->batch_sum.data());
     for (std::size_t i = 0; i < worker->sum.size(); ++i) worker->sum[i] += worker->batch_sum[i];
   }
 

@@ -75,21 +75,24 @@ TEST_P(BatchedMlpTest, BackwardGivesTheGradientOfJets) {
 }
 
 TEST_P(BatchedMlpTest, WeightGradientIsTheSumOverSamples) {
-  const auto seeds = RandomNumbers(kChannels * kBatch, -1.0, 1.0, /*seed=*/4);
-  BatchedMlp<double> mlp(shape_, 1);
+  constexpr int kRows = 2, kRow = 1;
+  BatchedMlp<double> mlp(shape_, kRows);
   mlp.Forward(weights_.data(), input_.data());
-  std::copy(seeds.begin(), seeds.end(), mlp.output_gradient(0));
+  for (int r = 0; r < kRows; ++r) {
+    const auto seeds = RandomNumbers(kChannels * kBatch, -1.0, 1.0, /*seed=*/4 + r);
+    std::copy(seeds.begin(), seeds.end(), mlp.output_gradient(r));
+  }
   mlp.Backward(weights_.data());
   mlp.Transpose();
   std::vector<double> gradient(kWeights, 0.25), expected(kWeights, 0.25);
-  mlp.AddWeightGradient(-3.0, gradient.data());
+  mlp.AddWeightGradient(kRow, gradient.data());
   for (int l = 0; l < shape_.num_layers(); ++l) {
     const int columns = shape_.in(l) + 1;
     for (int n = 0; n < kBatch; ++n) {
       const double* input = mlp.layer_input(l) + n * kernels::Padded(columns);
-      const double* delta = mlp.delta(l) + n * kernels::Padded(shape_.out(l));
+      const double* delta = mlp.delta(l) + (n * kRows + kRow) * kernels::Padded(shape_.out(l));
       for (int i = 0; i < shape_.block_size(l); ++i) {
-        expected[shape_.offset(l) + i] -= 3.0 * delta[i / columns] * input[i % columns];
+        expected[shape_.offset(l) + i] += delta[i / columns] * input[i % columns];
       }
     }
   }

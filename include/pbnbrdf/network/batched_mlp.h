@@ -36,8 +36,8 @@ class BatchedMlp {
   // After Forward with the same weights.
   void Backward(const T* weights);
 
-  // gradient += scale * the sum over samples of the gradient with respect to all weights, of row 0.
-  void AddWeightGradient(T scale, T* gradient) const;
+  // After Backward: gradient += the sum over samples of a row's gradient with respect to all weights.
+  void AddWeightGradient(int row, T* gradient) const;
 
   // Makes what Backward left available by sample, kPad readable elements behind the last
   // (kernels.h):

@@ -15,7 +15,6 @@
 
 #include "pbnbrdf/base/aligned_vector.h"
 #include "pbnbrdf/network/batched_mlp.h"
-#include "pbnbrdf/problem/weight_gradient.h"
 
 namespace pbnbrdf {
 
@@ -50,7 +49,7 @@ class NormalEquations {
   NetworkShape shape_;
   std::vector<Block> blocks_;
   AlignedVector<T> unit_products_, input_products_;  // of one batch
-  WeightGradient<T> gradient_;
+  std::vector<AlignedVector<double>> gradients_;     // [layer]: Padded(out) x Padded(in + 1)
 };
 
 extern template class NormalEquations<float>;
