@@ -84,6 +84,7 @@ std::string ProblemFlagfile() {
   return text;
 }
 
+// Throws UsageError if a file is named twice; empty names stand for none.
 void CheckDifferent(const std::vector<std::string>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -3,8 +3,8 @@
 #include <gflags/gflags.h>
 
 #include "pbnbrdf/base/text.h"
-#include "shared_flags.h"
 
+DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
 DEFINE_string(encoding, "multiscale", "the network's input: cartesian | reciprocal | multiscale");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");

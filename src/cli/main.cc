@@ -13,7 +13,6 @@
 
 DEFINE_string(material, "", "source of reflectance, see below");
 DEFINE_string(out, "", "file to write");
-DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
 
 namespace pbnbrdf::cli {
 namespace {

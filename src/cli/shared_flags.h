@@ -7,7 +7,6 @@
 
 DECLARE_string(material);
 DECLARE_string(out);
-DECLARE_int32(threads);
 
 namespace pbnbrdf::cli {
 

@@ -79,6 +79,7 @@ void EnergyStrata<T>::Linearize(const T* weights, Linearization* at) const {
   }
   at->cost += 0.5 * residuals.squaredNorm();
   Eigen::Map<Eigen::VectorXd>(at->gradient.data(), p) += jacobian.transpose() * residuals;
+  if (at->hessian.empty()) return;
   Eigen::Map<RowMajor>(at->hessian.data(), p, p) += jacobian.transpose() * jacobian;
 }
 

@@ -138,20 +138,16 @@ class BatchedObjective final : public Objective {
         AddGradientOfBatch(w.data(), b, &worker);
       }
     });
-    Linearization energy;
-    energy.gradient.assign(shape_.num_weights(), 0.0);
-    energy.hessian.assign(energy_.empty() ? 0 : energy.gradient.size() * energy.gradient.size(),
-                          0.0);
-    if (!energy_.empty()) energy_.Linearize(w.data(), &energy);
-    *cost = energy.cost;
-    std::copy(energy.gradient.begin(), energy.gradient.end(), gradient);
+    Linearization at;  // its hessian stays empty
+    at.gradient.assign(shape_.num_weights(), 0.0);
     for (std::size_t p = 0; p < partitions; ++p) {
-      *cost += gradient_workers_[p]->cost;
-      for (int i = 0; i < shape_.num_weights(); ++i) gradient[i] += gradient_workers_[p]->sum[i];
+      at.cost += gradient_workers_[p]->cost;
+      for (int i = 0; i < shape_.num_weights(); ++i) at.gradient[i] += gradient_workers_[p]->sum[i];
     }
-    double sum = *cost;
-    for (int i = 0; i < shape_.num_weights(); ++i) sum += 0.0 * gradient[i];
-    return std::isfinite(sum);
+    energy_.Linearize(w.data(), &at);
+    *cost = at.cost;
+    std::copy(at.gradient.begin(), at.gradient.end(), gradient);
+    return IsFinite(at);
   }
 
   double MeanAbsLogError(const double* weights) override {

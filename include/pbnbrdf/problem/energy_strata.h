@@ -22,11 +22,9 @@ class EnergyStrata {
   // Empty if problem.energy_weight is 0: all costs are then 0.
   explicit EnergyStrata(const FitProblem& problem);
 
-  bool empty() const { return strata_.empty(); }
-
   double Cost(const T* weights) const;
 
-  // Adds the term's cost, gradient and J'J. Only strata whose albedo exceeds 1 have derivatives.
+  // Adds the term's cost, gradient and, unless at->hessian is empty, J'J. Only strata whose albedo exceeds 1 have derivatives.
   void Linearize(const T* weights, Linearization* at) const;
 
   // The directional albedo of each stratum.
