@@ -9,6 +9,7 @@
 
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/network/fast_neural_brdf.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/condensed_cost_function.h"
@@ -136,6 +137,14 @@ void BM_NeuralBrdf(benchmark::State& state) {
   EvaluateRepeatedly(NeuralBrdf(fixture.problem.Shape(), fixture.weights), state);
 }
 BENCHMARK(BM_NeuralBrdf)->Unit(benchmark::kMillisecond);
+
+// The same network in single precision.
+void BM_FastNeuralBrdf(benchmark::State& state) {
+  const Fixture fixture(1000);
+  const NeuralBrdf network(fixture.problem.Shape(), fixture.weights);
+  EvaluateRepeatedly(FastNeuralBrdf(network), state);
+}
+BENCHMARK(BM_FastNeuralBrdf)->Unit(benchmark::kMillisecond);
 
 void BM_MerlLookup(benchmark::State& state) {
   EvaluateRepeatedly(MerlBrdf::Tabulate(Gold()), state);

@@ -1,9 +1,7 @@
 // Written with Highway: this file is compiled once for each instruction set (foreach_target.h).
 #include "pbnbrdf/kernels/kernels.h"
 
-// Vectors are kept in arrays, which those of unknown length can't be; the others are dispensable.
-#define HWY_DISABLED_TARGETS                                                                   \
-  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+#include "disabled_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels.cc"
 #include <hwy/foreach_target.h>
@@ -11,11 +9,14 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "float_math-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
+// 32 vector registers rather than 16.
+constexpr bool kManyRegisters = HWY_MAX_BYTES >= 64 || HWY_ARCH_ARM_A64;
 
 // Rows of the register block of AddTransposedProduct: 3 vectors wide, it fills the register file.
 constexpr int kBlockRows = HWY_MAX_BYTES >= 64 ? 8 : 4;
@@ -23,41 +24,74 @@ constexpr int kBlockVectors = 3;
 constexpr int kRowProductRows = HWY_MAX_BYTES >= 64 ? 4 : 2;
 static_assert(kPad % kBlockRows == 0);
 
-// kRows outputs at two vectors of samples; W is read as w[o * stride_o + i * stride_i].
-template <int kRows, bool kBias, typename T>
+// Rows of the register block of Dense, of two vectors each.
+constexpr int kDenseRows = kManyRegisters ? 7 : 6;
+
+struct Linear {
+  template <class D, class V>
+  HWY_INLINE V operator()(D, V x) const {
+    return x;
+  }
+};
+
+struct TanhOf {
+  template <class V>
+  HWY_INLINE V operator()(hn::ScalableTag<float> d, V x) const {
+    return FastTanh(d, x);
+  }
+  template <class V>
+  HWY_INLINE V operator()(hn::ScalableTag<double> d, V x) const {
+    return hn::Tanh(d, x);
+  }
+};
+
+// kRows outputs; W is read as w[o * stride_o + i * stride_i].
+template <int kRows, bool kBias, class Activation, typename T>
 HWY_INLINE void DenseBlock(const T* w, int stride_o, int stride_i, int in, const T* x, T* y) {
+  constexpr int kVectors = kManyRegisters && kRows <= 3 ? 4 : 2;  // chains enough to hide latency
   const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int n = 0; n < kBatch; n += 2 * lanes) {
-    hn::Vec<decltype(d)> sum[kRows][2];
+  for (int n = 0; n < kBatch; n += kVectors * lanes) {
+    hn::Vec<decltype(d)> sum[kRows][kVectors];
     for (int o = 0; o < kRows; ++o) {
-      sum[o][0] = sum[o][1] = kBias ? hn::Set(d, w[o * stride_o + in * stride_i]) : hn::Zero(d);
+      for (auto& s : sum[o]) s = kBias ? hn::Set(d, w[o * stride_o + in * stride_i]) : hn::Zero(d);
     }
     for (int i = 0; i < in; ++i) {
-      const auto x0 = hn::LoadU(d, x + i * kBatch + n);
-      const auto x1 = hn::LoadU(d, x + i * kBatch + n + lanes);
+      hn::Vec<decltype(d)> from[kVectors];
+      for (int v = 0; v < kVectors; ++v) from[v] = hn::LoadU(d, x + i * kBatch + n + v * lanes);
       for (int o = 0; o < kRows; ++o) {
         const auto weight = hn::Set(d, w[o * stride_o + i * stride_i]);
-        sum[o][0] = hn::MulAdd(weight, x0, sum[o][0]);
-        sum[o][1] = hn::MulAdd(weight, x1, sum[o][1]);
+        for (int v = 0; v < kVectors; ++v) sum[o][v] = hn::MulAdd(weight, from[v], sum[o][v]);
       }
     }
     for (int o = 0; o < kRows; ++o) {
-      hn::StoreU(sum[o][0], d, y + o * kBatch + n);
-      hn::StoreU(sum[o][1], d, y + o * kBatch + n + lanes);
+      for (int v = 0; v < kVectors; ++v) {
+        hn::StoreU(Activation()(d, sum[o][v]), d, y + o * kBatch + n + v * lanes);
+      }
     }
   }
 }
 
-template <bool kBias, typename T>
+// DenseBlock<rows>, 1 <= rows <= kMostRows.
+template <int kMostRows, bool kBias, class Activation, typename T>
+HWY_INLINE void DenseRows(int rows, const T* w, int stride_o, int stride_i, int in, const T* x,
+                          T* y) {
+  if (rows == kMostRows) {
+    DenseBlock<kMostRows, kBias, Activation>(w, stride_o, stride_i, in, x, y);
+  } else if constexpr (kMostRows > 1) {
+    DenseRows<kMostRows - 1, kBias, Activation>(rows, w, stride_o, stride_i, in, x, y);
+  }
+}
+
+// In blocks of about equal size.
+template <bool kBias, class Activation, typename T>
 HWY_INLINE void DenseBlocks(const T* w, int stride_o, int stride_i, int out, int in, const T* x,
                             T* y) {
-  int o = 0;
-  for (; o + 4 <= out; o += 4) {
-    DenseBlock<4, kBias>(w + o * stride_o, stride_o, stride_i, in, x, y + o * kBatch);
-  }
-  for (; o < out; ++o) {
-    DenseBlock<1, kBias>(w + o * stride_o, stride_o, stride_i, in, x, y + o * kBatch);
+  const int blocks = (out + kDenseRows - 1) / kDenseRows;
+  for (int b = 0; b < blocks; ++b) {
+    const int begin = b * out / blocks, end = (b + 1) * out / blocks;
+    DenseRows<kDenseRows, kBias, Activation>(end - begin, w + begin * stride_o, stride_o, stride_i,
+                                             in, x, y + begin * kBatch);
   }
 }
 
@@ -65,7 +99,7 @@ template <typename T>
 HWY_INLINE void TanhAll(T* x, std::size_t count) {
   const hn::ScalableTag<T> d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    hn::StoreU(hn::Tanh(d, hn::LoadU(d, x + i)), d, x + i);
+    hn::StoreU(TanhOf()(d, hn::LoadU(d, x + i)), d, x + i);
   }
 }
 
@@ -207,10 +241,13 @@ HWY_INLINE void AddAllRowProducts(T alpha, const T* x, int rows_x, int x_stride,
 // The exported names: one for each precision, as HWY_EXPORT wants plain functions.
 #define PBNBRDF_KERNELS(T, Suffix)                                                              \
   void Dense##Suffix(const T* layer, int out, int in, const T* x, T* y) {                       \
-    DenseBlocks<true>(layer, in + 1, 1, out, in, x, y);                                         \
+    DenseBlocks<true, Linear>(layer, in + 1, 1, out, in, x, y);                                 \
+  }                                                                                             \
+  void DenseTanh##Suffix(const T* layer, int out, int in, const T* x, T* y) {                   \
+    DenseBlocks<true, TanhOf>(layer, in + 1, 1, out, in, x, y);                                 \
   }                                                                                             \
   void DenseTransposed##Suffix(const T* layer, int out, int in, const T* y, T* x) {             \
-    DenseBlocks<false>(layer, 1, in + 1, in, out, y, x);                                        \
+    DenseBlocks<false, Linear>(layer, 1, in + 1, in, out, y, x);                                \
   }                                                                                             \
   void Tanh##Suffix(T* x, std::size_t count) { TanhAll(x, count); }                             \
   void Exp##Suffix(T* x, std::size_t count) { ExpAll(x, count); }                               \
@@ -245,6 +282,7 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
 
 #define PBNBRDF_DISPATCH(T, Suffix)                                                             \
   HWY_EXPORT(Dense##Suffix);                                                                    \
+  HWY_EXPORT(DenseTanh##Suffix);                                                                \
   HWY_EXPORT(DenseTransposed##Suffix);                                                          \
   HWY_EXPORT(Tanh##Suffix);                                                                     \
   HWY_EXPORT(Exp##Suffix);                                                                      \
@@ -254,6 +292,10 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   template <>                                                                                   \
   void Dense(const T* layer, int out, int in, const T* x, T* y) {                               \
     HWY_DYNAMIC_DISPATCH(Dense##Suffix)(layer, out, in, x, y);                                  \
+  }                                                                                             \
+  template <>                                                                                   \
+  void DenseTanh(const T* layer, int out, int in, const T* x, T* y) {                           \
+    HWY_DYNAMIC_DISPATCH(DenseTanh##Suffix)(layer, out, in, x, y);                              \
   }                                                                                             \
   template <>                                                                                   \
   void DenseTransposed(const T* layer, int out, int in, const T* y, T* x) {                     \

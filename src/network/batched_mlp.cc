@@ -8,9 +8,8 @@ namespace {
 using kernels::kBatch;
 
 template <typename T>
-void ActivateAll(Activation activation, T* x, std::size_t count) {
-  if (activation == Activation::kTanh) return kernels::Tanh(x, count);
-  for (std::size_t i = 0; i < count; ++i) x[i] = std::max(x[i], T(0));
+void Rectify(AlignedVector<T>* x) {
+  for (T& value : *x) value = std::max(value, T(0));
 }
 
 // delta *= the activation's slope, from its value y.
@@ -56,10 +55,13 @@ void BatchedMlp<T>::Forward(const T* weights, const T* input) {
   input_ = input;
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
     T* output = activations_[layer].data();
-    kernels::Dense(weights + shape_.offset(layer), shape_.out(layer), shape_.in(layer), input,
-                   output);
-    if (layer + 1 < shape_.num_layers()) {
-      ActivateAll(shape_.activation(), output, activations_[layer].size());
+    const T* layer_weights = weights + shape_.offset(layer);
+    const bool hidden = layer + 1 < shape_.num_layers();
+    if (hidden && shape_.activation() == Activation::kTanh) {
+      kernels::DenseTanh(layer_weights, shape_.out(layer), shape_.in(layer), input, output);
+    } else {
+      kernels::Dense(layer_weights, shape_.out(layer), shape_.in(layer), input, output);
+      if (hidden) Rectify(&activations_[layer]);
     }
     input = output;
   }

@@ -21,11 +21,16 @@ constexpr int Padded(int size) { return (size + kPad - 1) / kPad * kPad; }
 template <typename T>
 void Dense(const T* layer, int out, int in, const T* x, T* y);
 
+// y = tanh(W x + b); errors as for Tanh.
+template <typename T>
+void DenseTanh(const T* layer, int out, int in, const T* x, T* y);
+
 // x = W' y, the bias left out. Shapes as for Dense.
 template <typename T>
 void DenseTransposed(const T* layer, int out, int in, const T* y, T* x);
 
-// In place; absolute error below 1e-6 (float) or 1e-14 (double). count: a multiple of kBatch.
+// In place; absolute error below 2e-7 (float) or 1e-14 (double), within [-1, 1], NaN for NaN.
+// count: a multiple of kBatch.
 template <typename T>
 void Tanh(T* x, std::size_t count);
 

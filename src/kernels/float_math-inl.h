@@ -1,0 +1,95 @@
+// float_math-inl.h: elementary functions of vectors of float, cheaper than those of
+// hwy/contrib/math. Included once for each instruction set, behind foreach_target.h.
+
+// Highway's own form of #pragma once for such files.
+#if defined(PBNBRDF_FLOAT_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PBNBRDF_FLOAT_MATH_INL_H
+#undef PBNBRDF_FLOAT_MATH_INL_H
+#else
+#define PBNBRDF_FLOAT_MATH_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pbnbrdf::kernels::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// AVX-512 approximates 1 / x and 1 / sqrt(x) to 14 bits, which one step of Newton's method doubles.
+// Elsewhere there are fewer bits, and division is fast enough.
+inline constexpr bool kHas14BitReciprocals = HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86;
+
+// 1 / x for normal x, relative error below 2e-7.
+template <class D, class V>
+HWY_INLINE V Reciprocal(D d, V x) {
+  if constexpr (!kHas14BitReciprocals) return hn::Div(hn::Set(d, 1.0f), x);
+  const V r = hn::ApproximateReciprocal(x);
+  return hn::Mul(r, hn::NegMulAdd(x, r, hn::Set(d, 2.0f)));
+}
+
+// 1 / sqrt(x) for normal x > 0, relative error below 3e-7.
+template <class D, class V>
+HWY_INLINE V ReciprocalSqrt(D d, V x) {
+  if constexpr (!kHas14BitReciprocals) return hn::Div(hn::Set(d, 1.0f), hn::Sqrt(x));
+  const V r = hn::ApproximateReciprocalSqrt(x);
+  const V half = hn::Mul(hn::Set(d, 0.5f), hn::Mul(x, r));
+  return hn::Mul(r, hn::NegMulAdd(half, r, hn::Set(d, 1.5f)));
+}
+
+// coefficients[0] + coefficients[1] x + ...
+template <int kSize, class D, class V>
+HWY_INLINE V Polynomial(D d, V x, const float (&coefficients)[kSize]) {
+  V sum = hn::Set(d, coefficients[kSize - 1]);
+  for (int i = kSize - 2; i >= 0; --i) sum = hn::MulAdd(sum, x, hn::Set(d, coefficients[i]));
+  return sum;
+}
+
+// Absolute error below 2e-7; odd, within [-1, 1], NaN for NaN. A minimax fit of x P(x^2) / Q(x^2) for
+// |x| < kLargest; behind that x^2 stays and the ratio, which grows with x, is cut.
+template <class D, class V>
+HWY_INLINE V FastTanh(D d, V x) {
+  constexpr float kLargest = 8.5f;
+  constexpr float kP[] = {0.999999948f, 0.13406565f, 0.00352623816f, 2.11281991e-05f,
+                          1.41079876e-08f};
+  constexpr float kQ[] = {1.0f, 0.467398769f, 0.0259927478f, 0.00033363636f, 8.07728786e-07f};
+  const V x2 = hn::Min(hn::Set(d, kLargest * kLargest), hn::Mul(x, x));
+  const V p = hn::Mul(x, Polynomial(d, x2, kP));
+  const V q = Polynomial(d, x2, kQ);
+  const V ratio = kHas14BitReciprocals ? hn::Mul(p, Reciprocal(d, q)) : hn::Div(p, q);
+  // The second operand is the one that x86 returns if it is NaN.
+  return hn::Min(hn::Set(d, 1.0f), hn::Max(hn::Set(d, -1.0f), ratio));
+}
+
+// expm1(x) for 0 <= x < 88, relative error below 4e-7: 2^n (1 + expm1(r)) - 1 with x = n log 2 + r.
+template <class D, class V>
+HWY_INLINE V FastExpm1(D d, V x) {
+  constexpr float kPerLog2 = 1.44269504f, kLog2High = 0.693359375f, kLog2Low = -2.12194440e-4f;
+  constexpr float kP[] = {0.499999982f, 0.166665437f, 0.0416671996f, 0.00836651394f,
+                          0.00138825227f};  // (expm1(r) - r) / r^2, minimax for |r| < log(2) / 2
+  const hn::RebindToSigned<D> di;
+  const V n = hn::Round(hn::Mul(x, hn::Set(d, kPerLog2)));
+  const V r = hn::NegMulAdd(n, hn::Set(d, kLog2Low), hn::NegMulAdd(n, hn::Set(d, kLog2High), x));
+  const V p = hn::MulAdd(hn::Mul(r, r), Polynomial(d, r, kP), r);
+  const auto exponent = hn::Add(hn::ConvertTo(di, n), hn::Set(di, 127));
+  const V scale = hn::BitCast(d, hn::ShiftLeft<23>(exponent));  // 2^n
+  return hn::MulAdd(scale, p, hn::Sub(scale, hn::Set(d, 1.0f)));
+}
+
+// The angle in [0, pi] of the given sine >= 0 and cosine, relative error below 4e-7:
+// 2 atan(t), t = sine / (1 + cosine), for the acute one.
+template <class D, class V>
+HWY_INLINE V AngleOf(D d, V sine, V cosine) {
+  constexpr float kPi = 3.14159265f;
+  // 2 atan(t) / t, minimax for 0 <= t <= 1, in t^2.
+  constexpr float kP[] = {1.999999972f,   -0.66666188f,   0.399861058f,  -0.284142672f, 0.213093548f,
+                          -0.150673521f, 0.0860787358f, -0.0325660162f, 0.0058071051f};
+  const V t = hn::Mul(sine, Reciprocal(d, hn::Add(hn::Set(d, 1.0f), hn::Abs(cosine))));
+  const V acute = hn::Mul(t, Polynomial(d, hn::Mul(t, t), kP));
+  return hn::IfThenElse(hn::Lt(cosine, hn::Zero(d)), hn::Sub(hn::Set(d, kPi), acute), acute);
+}
+
+}  // namespace pbnbrdf::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // PBNBRDF_FLOAT_MATH_INL_H
