@@ -5,10 +5,12 @@
 // items_per_second counts samples (network evaluations for BM_NeuralBrdf).
 #include <benchmark/benchmark.h>
 #include <ceres/problem.h>
+#include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/kernels/kernels.h"
 #include "pbnbrdf/network/fast_neural_brdf.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
@@ -138,13 +140,16 @@ void BM_NeuralBrdf(benchmark::State& state) {
 }
 BENCHMARK(BM_NeuralBrdf)->Unit(benchmark::kMillisecond);
 
-// The same network in single precision.
+// The same network in single precision. Arg: 1 for AVX2 even where there is AVX-512.
 void BM_FastNeuralBrdf(benchmark::State& state) {
   const Fixture fixture(1000);
   const NeuralBrdf network(fixture.problem.Shape(), fixture.weights);
+  if (state.range(0)) hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~(HWY_AVX2 - 1));
+  state.SetLabel(kernels::InstructionSet());
   EvaluateRepeatedly(FastNeuralBrdf(network), state);
+  hwy::SetSupportedTargetsForTest(0);
 }
-BENCHMARK(BM_FastNeuralBrdf)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_FastNeuralBrdf)->ArgName("avx2")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 void BM_MerlLookup(benchmark::State& state) {
   EvaluateRepeatedly(MerlBrdf::Tabulate(Gold()), state);

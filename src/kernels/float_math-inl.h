@@ -11,6 +11,8 @@
 
 #include <hwy/highway.h>
 
+#include "tanh_table.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
 
@@ -18,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // AVX-512 approximates 1 / x and 1 / sqrt(x) to 14 bits, which one step of Newton's method doubles.
 // Elsewhere there are fewer bits, and division is fast enough.
-inline constexpr bool kHas14BitReciprocals = HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86;
+inline constexpr bool kHas14BitReciprocals = HWY_TARGET == HWY_AVX3;
 
 // 1 / x for normal x, relative error below 2e-7.
 template <class D, class V>
@@ -45,7 +47,30 @@ HWY_INLINE V Polynomial(D d, V x, const float (&coefficients)[kSize]) {
   return sum;
 }
 
-// Absolute error below 2e-7; odd, within [-1, 1], NaN for NaN. A minimax fit of x P(x^2) / Q(x^2) for
+#if HWY_TARGET == HWY_AVX3
+// values[index mod kTanhIntervals] in each lane.
+HWY_INLINE hn::Vec512<float> LookUp(const float* values, hn::Vec512<std::int32_t> index) {
+  return hn::Vec512<float>{
+      _mm512_permutex2var_ps(_mm512_load_ps(values), index.raw, _mm512_load_ps(values + 16))};
+}
+
+// Absolute error below 2e-7; odd, within [-1, 1], NaN for NaN. Here tables in registers are cheaper
+// than a reciprocal.
+template <class D, class V>
+HWY_INLINE V FastTanh(D d, V x) {
+  constexpr float kRound = 12582912.0f;  // the last bit of 1.5 * 2^23 is worth 1
+  constexpr float kLargest = (kTanhIntervals - 0.55f) * kTanhWidth;
+  // The second operand is the one that x86 returns if it is NaN.
+  const V size = hn::Min(hn::Set(d, kLargest), hn::Abs(x));
+  const V interval = hn::MulAdd(size, hn::Set(d, 1.0f / kTanhWidth), hn::Set(d, kRound));
+  const auto index = hn::BitCast(hn::RebindToSigned<D>(), interval);
+  const V r = hn::NegMulAdd(hn::Sub(interval, hn::Set(d, kRound)), hn::Set(d, kTanhWidth), size);
+  V sum = LookUp(kTanhTable[5], index);
+  for (int j = 4; j >= 0; --j) sum = hn::MulAdd(sum, r, LookUp(kTanhTable[j], index));
+  return hn::CopySignToAbs(sum, x);
+}
+#else
+// Absolute error below 4e-7; odd, within [-1, 1], NaN for NaN. A minimax fit of x P(x^2) / Q(x^2) for
 // |x| < kLargest; behind that x^2 stays and the ratio, which grows with x, is cut.
 template <class D, class V>
 HWY_INLINE V FastTanh(D d, V x) {
@@ -56,10 +81,11 @@ HWY_INLINE V FastTanh(D d, V x) {
   const V x2 = hn::Min(hn::Set(d, kLargest * kLargest), hn::Mul(x, x));
   const V p = hn::Mul(x, Polynomial(d, x2, kP));
   const V q = Polynomial(d, x2, kQ);
-  const V ratio = kHas14BitReciprocals ? hn::Mul(p, Reciprocal(d, q)) : hn::Div(p, q);
-  // The second operand is the one that x86 returns if it is NaN.
-  return hn::Min(hn::Set(d, 1.0f), hn::Max(hn::Set(d, -1.0f), ratio));
+  const V ratio = hn::Div(p, q);
+  const V clamped = hn::Min(hn::Set(d, 1.0f), hn::Max(hn::Set(d, -1.0f), ratio));
+  return hn::IfThenElse(hn::IsNaN(x), x, clamped);
 }
+#endif
 
 // expm1(x) for 0 <= x < 88, relative error below 4e-7: 2^n (1 + expm1(r)) - 1 with x = n log 2 + r.
 template <class D, class V>
@@ -82,7 +108,7 @@ template <class D, class V>
 HWY_INLINE V AngleOf(D d, V sine, V cosine) {
   constexpr float kPi = 3.14159265f;
   // 2 atan(t) / t, minimax for 0 <= t <= 1, in t^2.
-  constexpr float kP[] = {1.999999972f,   -0.66666188f,   0.399861058f,  -0.284142672f, 0.213093548f,
+  constexpr float kP[] = {1.999999972f,  -0.66666188f,  0.399861058f,   -0.284142672f, 0.213093548f,
                           -0.150673521f, 0.0860787358f, -0.0325660162f, 0.0058071051f};
   const V t = hn::Mul(sine, Reciprocal(d, hn::Add(hn::Set(d, 1.0f), hn::Abs(cosine))));
   const V acute = hn::Mul(t, Polynomial(d, hn::Mul(t, t), kP));

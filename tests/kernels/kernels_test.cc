@@ -1,6 +1,7 @@
 // Each kernel against the plain loops that define it, at sizes around those of a register block.
 #include "pbnbrdf/kernels/kernels.h"
 
+#include "instruction_sets.h"
 #include "test_util.h"
 
 namespace pbnbrdf::kernels {
@@ -54,21 +55,61 @@ TYPED_TEST(Kernels, DenseTransposedIsWTransposedY) {
   }
 }
 
-TYPED_TEST(Kernels, TanhIsAsAccurateAsStated) {
-  using T = TypeParam;
-  std::vector<T> x(100 * kBatch);
+// From denormal to infinite, and densely where tanh bends.
+template <typename T>
+std::vector<T> TanhArguments() {
+  std::vector<T> x(800 * kBatch);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = static_cast<T>(std::ldexp(1.0, int(i % 64) - 50) * (i % 2 ? 1.1 : -1.3));
+    x[i] = i % 2 ? static_cast<T>(10.0 * static_cast<double>(i) / static_cast<double>(x.size()))
+                 : static_cast<T>(std::ldexp(1.3, int(i % 280) - 140));
   }
   x[0] = 0;
-  std::vector<T> y = x;
-  Tanh(y.data(), y.size());
-  double worst = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    worst = std::max(worst, std::abs(y[i] - std::tanh(double(x[i]))));
+  x[2] = std::numeric_limits<T>::infinity();
+  return x;
+}
+
+TYPED_TEST(Kernels, TanhIsAsAccurateAsStated) {
+  using T = TypeParam;
+  const std::vector<T> x = TanhArguments<T>();
+  ForEachInstructionSet([&](const char* set) {
+    std::vector<T> y = x;
+    Tanh(y.data(), y.size());
+    double worst = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      worst = std::max(worst, std::abs(y[i] - std::tanh(double(x[i]))));
+    }
+    EXPECT_LT(worst, sizeof(T) == 4 ? 4e-7 : 1e-14) << set;
+  });
+}
+
+TYPED_TEST(Kernels, TanhIsOddAndBoundedAndKeepsNaN) {
+  using T = TypeParam;
+  const std::vector<T> x = TanhArguments<T>();
+  ForEachInstructionSet([&](const char* set) {
+    std::vector<T> y = x, mirrored;
+    for (T value : x) mirrored.push_back(-value);
+    y[4] = std::numeric_limits<T>::quiet_NaN();
+    Tanh(y.data(), y.size());
+    Tanh(mirrored.data(), mirrored.size());
+    EXPECT_TRUE(std::isnan(y[4])) << set;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (i == 4) continue;
+      ASSERT_EQ(mirrored[i], -y[i]) << set << ", x = " << x[i];
+      ASSERT_LE(std::abs(y[i]), T(1)) << set << ", x = " << x[i];
+    }
+  });
+}
+
+TYPED_TEST(Kernels, DenseTanhIsDenseThenTanh) {
+  using T = TypeParam;
+  for (auto [out, in] : {std::pair(1, 1), {3, 22}, {21, 6}, {21, 21}, {65, 33}}) {
+    const auto layer = Random<T>(out * (in + 1), 1), x = Random<T>(in * kBatch, 2);
+    std::vector<T> y(out * kBatch), expected(out * kBatch);
+    DenseTanh(layer.data(), out, in, x.data(), y.data());
+    Dense(layer.data(), out, in, x.data(), expected.data());
+    Tanh(expected.data(), expected.size());
+    EXPECT_EQ(y, expected) << out << " x " << in;
   }
-  this->RecordProperty("worst_error", std::to_string(worst));
-  EXPECT_LT(worst, sizeof(T) == 4 ? 1e-6 : 1e-14);
 }
 
 TYPED_TEST(Kernels, PairProductsSumOverRows) {
