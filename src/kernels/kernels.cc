@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "kernels.cc"
 #include <hwy/foreach_target.h>
 // clang-format: keep the order
+#include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -18,11 +19,9 @@ namespace {
 // 32 vector registers rather than 16.
 constexpr bool kManyRegisters = HWY_MAX_BYTES >= 64 || HWY_ARCH_ARM_A64;
 
-// Rows of the register block of AddTransposedProduct: 3 vectors wide, it fills the register file.
-constexpr int kBlockRows = HWY_MAX_BYTES >= 64 ? 8 : 4;
-constexpr int kBlockVectors = 3;
+// Rows of the register block of AddProduct: 3 vectors wide, it fills the register file.
+constexpr int kBlockRows = kManyRegisters ? 8 : 4;
 constexpr int kRowProductRows = HWY_MAX_BYTES >= 64 ? 4 : 2;
-static_assert(kPad % kBlockRows == 0);
 
 // Rows of the register block of Dense, of two vectors each.
 constexpr int kDenseRows = kManyRegisters ? 7 : 6;
@@ -112,74 +111,134 @@ HWY_INLINE void ExpAll(T* x, std::size_t count) {
 }
 
 template <typename T>
-HWY_INLINE void PairProductsOf(const T* a, int na, const T* b, int nb, int rows, bool symmetric,
-                               T* out, int out_stride) {
+HWY_INLINE void PairProductsOf(const T* a, int na, const T* b, int nb, bool symmetric, T* out,
+                               int out_stride) {
   const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const int a_stride = Padded(na), b_stride = Padded(nb);
-  for (int n = 0; n < kBatch; ++n) {
+  for (int n = 0; n < kBatch; ++n, a += Padded(na), b += Padded(nb)) {
     T* to = out + static_cast<std::size_t>(n) * out_stride;
     for (int i = 0; i < na; ++i) {
       const int first = symmetric ? i : 0;
+      const auto factor = hn::Set(d, a[i]);
       // A whole vector is written at the end of each run of pairs; the next run overwrites the
       // rest.
       for (int j = first; j < nb; j += lanes) {
-        auto sum = hn::Zero(d);
-        for (int r = 0; r < rows; ++r) {
-          sum = hn::MulAdd(hn::Set(d, a[r * a_stride + i]), hn::LoadU(d, b + r * b_stride + j), sum);
-        }
-        hn::StoreU(sum, d, to + (j - first));
+        hn::StoreU(hn::Mul(factor, hn::LoadU(d, b + j)), d, to + (j - first));
       }
       to += nb - first;
     }
     for (int j = 0; j < kPad; j += lanes) hn::StoreU(hn::Zero(d), d, to + j);
-    a += rows * a_stride;
-    b += rows * b_stride;
   }
 }
 
-// kBlockRows x kVectors vectors of c.
-template <int kVectors, typename T>
-HWY_INLINE void ProductBlock(const T* x, int x_stride, const T* y, int y_stride, double* c,
-                             int c_stride) {
+// Two vectors of samples at a time: all rows of a and b at these stay in the first-level cache.
+template <typename T>
+HWY_INLINE void SummedPairProductsOf(const T* a, int na, const T* b, int nb, int rows,
+                                     bool symmetric, T* out) {
   const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  hn::Vec<decltype(d)> sum[kBlockRows][kVectors];
+  for (int n = 0; n < kBatch; n += 2 * lanes) {
+    T* to = out + n;
+    for (int i = 0; i < na; ++i) {
+      for (int j = symmetric ? i : 0; j < nb; ++j, to += kBatch) {
+        auto sum0 = hn::Zero(d), sum1 = hn::Zero(d);
+        for (int r = 0; r < rows; ++r) {
+          const T* from_a = a + (r * na + i) * kBatch + n;
+          const T* from_b = b + (r * nb + j) * kBatch + n;
+          sum0 = hn::MulAdd(hn::LoadU(d, from_a), hn::LoadU(d, from_b), sum0);
+          sum1 = hn::MulAdd(hn::LoadU(d, from_a + lanes), hn::LoadU(d, from_b + lanes), sum1);
+        }
+        hn::StoreU(sum0, d, to);
+        hn::StoreU(sum1, d, to + lanes);
+      }
+    }
+  }
+}
+
+// c += v, in double.
+template <class D, class V>
+HWY_INLINE void AddTo(D d, V v, double* c) {
+  using T = hn::TFromD<D>;
+  const hn::ScalableTag<double> dd;
+  const hn::Rebind<T, decltype(dd)> part;
+  HWY_ALIGN T values[HWY_MAX_BYTES / sizeof(T)];
+  hn::Store(v, d, values);
+  for (std::size_t i = 0; i < hn::Lanes(d); i += hn::Lanes(dd)) {
+    const auto values_i = hn::Load(part, values + i);
+    if constexpr (sizeof(T) == sizeof(double)) {
+      hn::StoreU(hn::Add(hn::LoadU(dd, c + i), values_i), dd, c + i);
+    } else {
+      hn::StoreU(hn::Add(hn::LoadU(dd, c + i), hn::PromoteTo(dd, values_i)), dd, c + i);
+    }
+  }
+}
+
+// kRows x kVectors vectors of c.
+template <int kRows, int kVectors, typename T>
+HWY_INLINE void ProductBlock(const T* x, const T* y, int y_stride, double* c, int c_stride) {
+  const hn::ScalableTag<T> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kVectors * lanes; j += 64 / sizeof(double)) {
+      hwy::Prefetch(c + i * c_stride + j);
+    }
+  }
+  hn::Vec<decltype(d)> sum[kRows][kVectors];
   for (auto& row : sum) {
     for (auto& s : row) s = hn::Zero(d);
   }
-  for (int n = 0; n < kBatch; ++n) {
+  for (int n = 0; n < kBatch; ++n, y += y_stride) {
     hn::Vec<decltype(d)> from[kVectors];
     for (int v = 0; v < kVectors; ++v) from[v] = hn::LoadU(d, y + v * lanes);
-    for (int i = 0; i < kBlockRows; ++i) {
-      const auto factor = hn::Set(d, x[i]);
+    for (int i = 0; i < kRows; ++i) {
+      const auto factor = hn::Set(d, x[i * kBatch + n]);
       for (int v = 0; v < kVectors; ++v) sum[i][v] = hn::MulAdd(factor, from[v], sum[i][v]);
     }
-    x += x_stride;
-    y += y_stride;
   }
-  HWY_ALIGN T row[kVectors * HWY_MAX_BYTES / sizeof(T)];
-  for (int i = 0; i < kBlockRows; ++i) {
-    for (int v = 0; v < kVectors; ++v) hn::StoreU(sum[i][v], d, row + v * lanes);
-    for (int j = 0; j < kVectors * lanes; ++j) c[i * c_stride + j] += row[j];
+  for (int i = 0; i < kRows; ++i) {
+    for (int v = 0; v < kVectors; ++v) AddTo(d, sum[i][v], c + i * c_stride + v * lanes);
+  }
+}
+
+// ProductBlock<rows, kVectors>, 1 <= rows <= kMostRows.
+template <int kMostRows, int kVectors, typename T>
+HWY_INLINE void ProductRows(int rows, const T* x, const T* y, int y_stride, double* c,
+                            int c_stride) {
+  if (rows == kMostRows) {
+    ProductBlock<kMostRows, kVectors>(x, y, y_stride, c, c_stride);
+  } else if constexpr (kMostRows > 1) {
+    ProductRows<kMostRows - 1, kVectors>(rows, x, y, y_stride, c, c_stride);
+  }
+}
+
+// kVectors vectors of columns: a panel of y that stays in the first-level cache while x streams by.
+// The rows of x are in blocks of about equal size.
+template <int kVectors, typename T>
+HWY_NOINLINE void ProductPanel(const T* x, int p, const T* y, int y_stride, double* c,
+                               int c_stride) {
+  const int blocks = (p + kBlockRows - 1) / kBlockRows;
+  for (int b = 0; b < blocks; ++b) {
+    const int begin = b * p / blocks, end = (b + 1) * p / blocks;
+    ProductRows<kBlockRows, kVectors>(end - begin, x + begin * kBatch, y, y_stride,
+                                      c + begin * c_stride, c_stride);
   }
 }
 
 template <typename T>
-HWY_INLINE void AddProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,
-                           double* c) {
+HWY_INLINE void AddProductOf(const T* x, int p, const T* y, int q, int y_stride, double* c) {
   const int lanes = static_cast<int>(hn::Lanes(hn::ScalableTag<T>()));
   const int c_stride = Padded(q);
-  int j = 0;
-  // The columns outermost: a panel of y stays in the first-level cache while x streams by.
-  for (; j + kBlockVectors * lanes <= q + lanes - 1; j += kBlockVectors * lanes) {
-    for (int i = 0; i < p; i += kBlockRows) {
-      ProductBlock<kBlockVectors>(x + i, x_stride, y + j, y_stride, c + i * c_stride + j, c_stride);
-    }
-  }
-  for (; j < q; j += lanes) {
-    for (int i = 0; i < p; i += kBlockRows) {
-      ProductBlock<1>(x + i, x_stride, y + j, y_stride, c + i * c_stride + j, c_stride);
+  for (int j = 0; j < q;) {
+    const int vectors = (q - j + lanes - 1) / lanes;
+    if (vectors >= 3 && vectors != 4) {
+      ProductPanel<3>(x, p, y + j, y_stride, c + j, c_stride);
+      j += 3 * lanes;
+    } else if (vectors >= 2) {
+      ProductPanel<2>(x, p, y + j, y_stride, c + j, c_stride);
+      j += 2 * lanes;
+    } else {
+      ProductPanel<1>(x, p, y + j, y_stride, c + j, c_stride);
+      j += lanes;
     }
   }
 }
@@ -255,13 +314,16 @@ HWY_INLINE void AddAllRowProducts(T alpha, const T* x, int rows_x, int x_stride,
                               int rows_y, int y_stride, int size, T* c, int c_stride) {         \
     AddAllRowProducts(alpha, x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);      \
   }                                                                                             \
-  void PairProducts##Suffix(const T* a, int na, const T* b, int nb, int rows, bool symmetric,   \
-                            T* out, int out_stride) {                                           \
-    PairProductsOf(a, na, b, nb, rows, symmetric, out, out_stride);                             \
+  void PairProducts##Suffix(const T* a, int na, const T* b, int nb, bool symmetric, T* out,     \
+                            int out_stride) {                                                   \
+    PairProductsOf(a, na, b, nb, symmetric, out, out_stride);                                   \
   }                                                                                             \
-  void AddTransposedProduct##Suffix(const T* x, int p, int x_stride, const T* y, int q,         \
-                                    int y_stride, double* c) {                                  \
-    AddProduct(x, p, x_stride, y, q, y_stride, c);                                              \
+  void SummedPairProducts##Suffix(const T* a, int na, const T* b, int nb, int rows,             \
+                                  bool symmetric, T* out) {                                     \
+    SummedPairProductsOf(a, na, b, nb, rows, symmetric, out);                                   \
+  }                                                                                             \
+  void AddProduct##Suffix(const T* x, int p, const T* y, int q, int y_stride, double* c) {      \
+    AddProductOf(x, p, y, q, y_stride, c);                                                      \
   }
 
 PBNBRDF_KERNELS(float, F)
@@ -288,7 +350,8 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   HWY_EXPORT(Exp##Suffix);                                                                      \
   HWY_EXPORT(AddRowProducts##Suffix);                                                           \
   HWY_EXPORT(PairProducts##Suffix);                                                             \
-  HWY_EXPORT(AddTransposedProduct##Suffix);                                                     \
+  HWY_EXPORT(SummedPairProducts##Suffix);                                                       \
+  HWY_EXPORT(AddProduct##Suffix);                                                               \
   template <>                                                                                   \
   void Dense(const T* layer, int out, int in, const T* x, T* y) {                               \
     HWY_DYNAMIC_DISPATCH(Dense##Suffix)(layer, out, in, x, y);                                  \
@@ -316,14 +379,18 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
     (alpha, x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);                       \
   }                                                                                             \
   template <>                                                                                   \
-  void PairProducts(const T* a, int na, const T* b, int nb, int rows, bool symmetric, T* out,   \
+  void PairProducts(const T* a, int na, const T* b, int nb, bool symmetric, T* out,             \
                     int out_stride) {                                                           \
-    HWY_DYNAMIC_DISPATCH(PairProducts##Suffix)(a, na, b, nb, rows, symmetric, out, out_stride); \
+    HWY_DYNAMIC_DISPATCH(PairProducts##Suffix)(a, na, b, nb, symmetric, out, out_stride);       \
   }                                                                                             \
   template <>                                                                                   \
-  void AddTransposedProduct(const T* x, int p, int x_stride, const T* y, int q, int y_stride,   \
-                            double* c) {                                                        \
-    HWY_DYNAMIC_DISPATCH(AddTransposedProduct##Suffix)(x, p, x_stride, y, q, y_stride, c);      \
+  void SummedPairProducts(const T* a, int na, const T* b, int nb, int rows, bool symmetric,     \
+                          T* out) {                                                             \
+    HWY_DYNAMIC_DISPATCH(SummedPairProducts##Suffix)(a, na, b, nb, rows, symmetric, out);       \
+  }                                                                                             \
+  template <>                                                                                   \
+  void AddProduct(const T* x, int p, const T* y, int q, int y_stride, double* c) {              \
+    HWY_DYNAMIC_DISPATCH(AddProduct##Suffix)(x, p, y, q, y_stride, c);                          \
   }
 
 PBNBRDF_DISPATCH(float, F)

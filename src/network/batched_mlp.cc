@@ -43,7 +43,6 @@ BatchedMlp<T>::BatchedMlp(const NetworkShape& shape, int rows)
     activations_.emplace_back(out * kBatch);
     if (rows == 0) continue;
     deltas_.emplace_back(rows * out * kBatch);
-    deltas_by_sample_.emplace_back(kBatch * rows * kernels::Padded(out) + kernels::kPad);
     const int stride = kernels::Padded(in + 1);
     AlignedVector<T>& inputs = inputs_by_sample_.emplace_back(kBatch * stride + kernels::kPad);
     for (int n = 0; n < kBatch; ++n) inputs[n * stride + in] = T(1);
@@ -97,15 +96,11 @@ void BatchedMlp<T>::AddWeightGradient(int row, T* gradient) const {
 }
 
 template <typename T>
-void BatchedMlp<T>::Transpose() {
+void BatchedMlp<T>::TransposeInputs() {
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
-    const int in = shape_.in(layer), out = shape_.out(layer), padded = kernels::Padded(out);
+    const int in = shape_.in(layer);
     TransposeMatrix(layer == 0 ? input_ : activations_[layer - 1].data(), in,
                     inputs_by_sample_[layer].data(), kernels::Padded(in + 1));
-    for (int row = 0; row < rows_; ++row) {
-      TransposeMatrix(deltas_[layer].data() + row * out * kBatch, out,
-                      deltas_by_sample_[layer].data() + row * padded, rows_ * padded);
-    }
   }
 }
 

@@ -174,10 +174,12 @@ class BatchedObjective final : public Objective {
     at->cost = 0.0;
     at->gradient.assign(shape_.num_weights(), 0.0);
     at->hessian.assign(at->gradient.size() * at->gradient.size(), 0.0);
+    std::vector<const NormalEquations<T>*> others;
     for (std::size_t p = 0; p < partitions; ++p) {
       at->cost += workers_[p]->cost;
-      if (p > 0) workers_[0]->sums.Add(workers_[p]->sums);
+      if (p > 0) others.push_back(&workers_[p]->sums);
     }
+    workers_[0]->sums.Add(others);
     workers_[0]->sums.AddTo(at->gradient.data(), at->hessian.data());
     energy_.Linearize(w.data(), at);
     return IsFinite(*at);
@@ -252,7 +254,7 @@ class BatchedObjective final : public Objective {
       worker->cost += chromaticity_.Linearize(sample, z, set_from(log_.rows()));
     }
     mlp.Backward(w);
-    mlp.Transpose();
+    mlp.TransposeInputs();
     worker->sums.AddBatch(mlp, worker->residuals.data());
   }
 

@@ -112,30 +112,21 @@ TYPED_TEST(Kernels, DenseTanhIsDenseThenTanh) {
   }
 }
 
-TYPED_TEST(Kernels, PairProductsSumOverRows) {
+TYPED_TEST(Kernels, PairProductsAreInOrderWithZerosBehind) {
   using T = TypeParam;
-  for (auto [na, nb, rows, symmetric] : {std::tuple(21, 21, 3, true),
-                                         {21, 3, 4, false},
-                                         {7, 22, 1, false},
-                                         {1, 1, 1, true},
-                                         {3, 3, 3, true},
-                                         {33, 17, 2, false}}) {
-    const int a_stride = Padded(na), b_stride = Padded(nb);
-    const auto a = Random<T>(kBatch * rows * a_stride + kPad, 5);
-    const auto b = symmetric ? a : Random<T>(kBatch * rows * b_stride + kPad, 6);
+  for (auto [na, nb, symmetric] :
+       {std::tuple(21, 21, true), {7, 22, false}, {1, 1, true}, {3, 3, true}, {33, 17, false}}) {
+    const auto a = Random<T>(kBatch * Padded(na) + kPad, 5);
+    const auto b = symmetric ? a : Random<T>(kBatch * Padded(nb) + kPad, 6);
     const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
     const int stride = pairs + kPad + 3;
     std::vector<T> out(kBatch * stride, T(7));
-    PairProducts(a.data(), na, b.data(), nb, rows, symmetric, out.data(), stride);
+    PairProducts(a.data(), na, b.data(), nb, symmetric, out.data(), stride);
     for (int n = 0; n < kBatch; ++n) {
       const T* at = out.data() + n * stride;
       for (int i = 0; i < na; ++i) {
         for (int j = symmetric ? i : 0; j < nb; ++j, ++at) {
-          double sum = 0.0;
-          for (int r = 0; r < rows; ++r) {
-            sum += double(a[(n * rows + r) * a_stride + i]) * b[(n * rows + r) * b_stride + j];
-          }
-          ASSERT_NEAR(*at, sum, this->kTolerance) << na << " x " << nb;
+          ASSERT_EQ(*at, a[n * Padded(na) + i] * b[n * Padded(nb) + j]) << na << " x " << nb;
         }
       }
       for (int k = 0; k < kPad; ++k) ASSERT_EQ(at[k], T(0));
@@ -144,20 +135,52 @@ TYPED_TEST(Kernels, PairProductsSumOverRows) {
   }
 }
 
-TYPED_TEST(Kernels, AddTransposedProductAdds) {
+TYPED_TEST(Kernels, SummedPairProductsSumOverRows) {
   using T = TypeParam;
-  for (auto [p, q] : {std::pair(1, 1), {8, 48}, {9, 49}, {231, 253}, {21, 7}, {63, 154}}) {
-    const int x_stride = Padded(p) + kPad, y_stride = Padded(q);
-    const auto x = Random<T>(kBatch * x_stride, 7), y = Random<T>(kBatch * y_stride, 8);
-    std::vector<double> c(Padded(p) * Padded(q), 0.5);
-    AddTransposedProduct(x.data(), p, x_stride, y.data(), q, y_stride, c.data());
-    for (int i = 0; i < p; ++i) {
-      for (int j = 0; j < q; ++j) {
-        double sum = 0.5;
-        for (int n = 0; n < kBatch; ++n) sum += double(x[n * x_stride + i]) * y[n * y_stride + j];
-        ASSERT_NEAR(c[i * Padded(q) + j], sum, this->kTolerance) << p << " x " << q;
+  for (auto [na, nb, rows, symmetric] : {std::tuple(21, 21, 3, true),
+                                         {21, 3, 4, false},
+                                         {7, 22, 1, false},
+                                         {1, 1, 1, true},
+                                         {33, 17, 2, false}}) {
+    const auto a = Random<T>(rows * na * kBatch, 5);
+    const auto b = symmetric ? a : Random<T>(rows * nb * kBatch, 6);
+    const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
+    std::vector<T> out((pairs + 1) * kBatch, T(7));
+    SummedPairProducts(a.data(), na, b.data(), nb, rows, symmetric, out.data());
+    const T* at = out.data();
+    for (int i = 0; i < na; ++i) {
+      for (int j = symmetric ? i : 0; j < nb; ++j) {
+        for (int n = 0; n < kBatch; ++n, ++at) {
+          double sum = 0.0;
+          for (int r = 0; r < rows; ++r) {
+            sum += double(a[(r * na + i) * kBatch + n]) * b[(r * nb + j) * kBatch + n];
+          }
+          ASSERT_NEAR(*at, sum, this->kTolerance) << na << " x " << nb;
+        }
       }
     }
+    for (int n = 0; n < kBatch; ++n) ASSERT_EQ(at[n], T(7));
+  }
+}
+
+TYPED_TEST(Kernels, AddProductAdds) {
+  using T = TypeParam;
+  for (auto [p, q] : {std::pair(1, 1), {8, 48}, {9, 49}, {231, 253}, {21, 7}, {63, 154}}) {
+    const int y_stride = Padded(q);
+    const auto x = Random<T>(p * kBatch, 7), y = Random<T>(kBatch * y_stride, 8);
+    const std::vector<double> before((p + 1) * Padded(q), 0.5);
+    ForEachInstructionSet([&, p = p, q = q](const char* set) {
+      std::vector<double> c = before;
+      AddProduct(x.data(), p, y.data(), q, y_stride, c.data());
+      for (int i = 0; i < p; ++i) {
+        for (int j = 0; j < q; ++j) {
+          double sum = 0.5;
+          for (int n = 0; n < kBatch; ++n) sum += double(x[i * kBatch + n]) * y[n * y_stride + j];
+          ASSERT_NEAR(c[i * Padded(q) + j], sum, this->kTolerance) << set << p << " x " << q;
+        }
+      }
+      for (int j = 0; j < Padded(q); ++j) ASSERT_EQ(c[p * Padded(q) + j], 0.5);
+    });
   }
 }
 

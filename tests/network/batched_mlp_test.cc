@@ -49,7 +49,7 @@ TEST_P(BatchedMlpTest, BackwardGivesTheGradientOfJets) {
     std::copy_n(&seeds[r * kChannels * kBatch], kChannels * kBatch, mlp.output_gradient(r));
   }
   mlp.Backward(weights_.data());
-  mlp.Transpose();
+  mlp.TransposeInputs();
 
   std::vector<WeightJet> jets;
   for (int i = 0; i < kWeights; ++i) jets.emplace_back(weights_[i], i);
@@ -61,12 +61,12 @@ TEST_P(BatchedMlpTest, BackwardGivesTheGradientOfJets) {
       WeightJet sum(0.0);
       for (int c = 0; c < kChannels; ++c) sum += seeds[(r * kChannels + c) * kBatch + n] * z[c];
       for (int l = 0, i = 0; l < shape_.num_layers(); ++l) {
-        const int columns = shape_.in(l) + 1, out = kernels::Padded(shape_.out(l));
+        const int columns = shape_.in(l) + 1;
         const double* input = mlp.layer_input(l) + n * kernels::Padded(columns);
-        const double* delta = mlp.delta(l) + (n * kRows + r) * out;
+        const double* delta = mlp.delta(l) + r * shape_.out(l) * kBatch + n;
         for (int o = 0; o < shape_.out(l); ++o) {
           for (int j = 0; j < columns; ++j, ++i) {
-            EXPECT_NEAR(delta[o] * input[j], sum.v[i], 1e-12) << "weight " << i;
+            EXPECT_NEAR(delta[o * kBatch] * input[j], sum.v[i], 1e-12) << "weight " << i;
           }
         }
       }
@@ -83,16 +83,16 @@ TEST_P(BatchedMlpTest, WeightGradientIsTheSumOverSamples) {
     std::copy(seeds.begin(), seeds.end(), mlp.output_gradient(r));
   }
   mlp.Backward(weights_.data());
-  mlp.Transpose();
+  mlp.TransposeInputs();
   std::vector<double> gradient(kWeights, 0.25), expected(kWeights, 0.25);
   mlp.AddWeightGradient(kRow, gradient.data());
   for (int l = 0; l < shape_.num_layers(); ++l) {
     const int columns = shape_.in(l) + 1;
     for (int n = 0; n < kBatch; ++n) {
       const double* input = mlp.layer_input(l) + n * kernels::Padded(columns);
-      const double* delta = mlp.delta(l) + (n * kRows + kRow) * kernels::Padded(shape_.out(l));
+      const double* delta = mlp.delta(l) + kRow * shape_.out(l) * kBatch + n;
       for (int i = 0; i < shape_.block_size(l); ++i) {
-        expected[shape_.offset(l) + i] += delta[i / columns] * input[i % columns];
+        expected[shape_.offset(l) + i] += delta[i / columns * kBatch] * input[i % columns];
       }
     }
   }

@@ -39,14 +39,15 @@ class BatchedMlp {
   // After Backward: gradient += the sum over samples of a row's gradient with respect to all weights.
   void AddWeightGradient(int row, T* gradient) const;
 
-  // Makes what Backward left available by sample, kPad readable elements behind the last
-  // (kernels.h):
-  void Transpose();
+  // After Backward: a row after the other, each by feature, out(layer) x kBatch.
+  const T* delta(int layer) const { return deltas_[layer].data(); }
 
-  //   layer_input: in(layer) values and 1, stride Padded(in + 1).
-  //   delta: rows of out(layer) values, row stride Padded(out), sample stride rows times that.
+  // After Forward: makes the layers' inputs available by sample, kPad readable elements behind the
+  // last (kernels.h):
+  void TransposeInputs();
+
+  // in(layer) values and 1, stride Padded(in + 1).
   const T* layer_input(int layer) const { return inputs_by_sample_[layer].data(); }
-  const T* delta(int layer) const { return deltas_by_sample_[layer].data(); }
 
  private:
   static constexpr int kChannels = NetworkShape::kChannels;
@@ -58,7 +59,7 @@ class BatchedMlp {
   AlignedVector<T> ones_;                      // the input of the biases, kBatch
   std::vector<AlignedVector<T>> activations_;  // [layer]: its output, by feature
   std::vector<AlignedVector<T>> deltas_;       // [layer]: row after row, by feature
-  std::vector<AlignedVector<T>> inputs_by_sample_, deltas_by_sample_;
+  std::vector<AlignedVector<T>> inputs_by_sample_;
 };
 
 extern template class BatchedMlp<float>;

@@ -11,6 +11,7 @@
 // 1.4 for J'J with three rows. Batches are summed in precision T, the whole in double.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pbnbrdf/base/aligned_vector.h"
@@ -25,13 +26,14 @@ class NormalEquations {
 
   void Clear();
 
-  // mlp: after Backward, its rows scaled by sqrt(weight). residuals: row after row, rows x kBatch,
+  // mlp: after Backward and TransposeInputs, its rows scaled by sqrt(weight). residuals: row after row, rows x kBatch,
   // scaled alike.
   void AddBatch(const BatchedMlp<T>& mlp, const T* residuals);
 
-  void Add(const NormalEquations& other);
+  // In the order given. In parallel, as AddTo.
+  void Add(std::span<const NormalEquations* const> others);
 
-  // Adds the sums to gradient (P) and hessian (P x P, both triangles).
+  // Adds the sums to gradient (P) and hessian (P x P, symmetric).
   void AddTo(double* gradient, double* hessian) const;
 
  private:
@@ -44,12 +46,12 @@ class NormalEquations {
 
   void AddGradient(const BatchedMlp<T>& mlp, const T* residuals);
   void AddBlock(const BatchedMlp<T>& mlp, Block* block);
-  void Scatter(const Block& block, double* hessian) const;
+  void AddToUpperTriangle(const Block& block, double* hessian) const;
 
   NetworkShape shape_;
   std::vector<Block> blocks_;
-  AlignedVector<T> unit_products_, input_products_;  // of one batch
-  std::vector<AlignedVector<double>> gradients_;     // [layer]: Padded(out) x Padded(in + 1)
+  AlignedVector<T> unit_products_, input_products_;  // of one batch: by feature, by sample
+  std::vector<AlignedVector<double>> gradients_;     // [layer]: out x Padded(in + 1)
 };
 
 extern template class NormalEquations<float>;
