@@ -2,20 +2,25 @@
 //
 //   build/bin/microbenchmarks --benchmark_filter=Linearize
 //
-// items_per_second counts samples (network evaluations for BM_NeuralBrdf).
+// items_per_second counts samples (direction pairs where nothing is fitted). The parts of a
+// linearization report GFLOP/s and their share of the machine's own rate of matrix products.
 #include <benchmark/benchmark.h>
 #include <ceres/problem.h>
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
+#include "matrix_product.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/kernels/evaluation.h"
 #include "pbnbrdf/kernels/kernels.h"
+#include "pbnbrdf/network/batched_mlp.h"
 #include "pbnbrdf/network/fast_neural_brdf.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/condensed_cost_function.h"
 #include "pbnbrdf/problem/jittered_cholesky.h"
+#include "pbnbrdf/problem/normal_equations.h"
 
 namespace pbnbrdf {
 namespace {
@@ -46,6 +51,92 @@ struct Fixture {
 void CountSamples(benchmark::State& state, std::size_t samples) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * samples));
 }
+
+// flops: of all iterations.
+void CountFlops(benchmark::State& state, double flops) {
+  const double rate = MatrixProductRate();
+  state.counters["GFLOP/s"] = benchmark::Counter(1e-9 * flops, benchmark::Counter::kIsRate);
+  state.counters["of_product"] =
+      benchmark::Counter(1e-9 * flops / rate, benchmark::Counter::kIsRate);
+}
+
+void BM_MatrixProduct(benchmark::State& state) {
+  const int size = static_cast<int>(state.range(0));
+  for (auto _ : state) MultiplyMatrices(size);
+  CountFlops(state, 2.0 * size * size * size * static_cast<double>(state.iterations()));
+}
+BENCHMARK(BM_MatrixProduct)->ArgName("size")->Arg(512)->Unit(benchmark::kMillisecond);
+
+// A batch in single precision on its way through the network and back, for the log term's 3 rows.
+struct Batch {
+  static constexpr int kRows = 3;
+
+  Batch()
+      : mlp(shape, kRows),
+        input(shape.in(0) * kernels::kBatch),
+        residuals(kRows * kernels::kBatch, 0.1f) {
+    const std::vector<double> initial = InitialWeights(shape, Samples(10), /*seed=*/1);
+    weights.assign(initial.begin(), initial.end());
+    for (std::size_t i = 0; i < input.size(); ++i) input[i] = 0.01f * static_cast<float>(i % 100);
+    mlp.Forward(weights.data(), input.data());
+    for (int row = 0; row < kRows; ++row) {
+      std::fill_n(mlp.output_gradient(row), NetworkShape::kChannels * kernels::kBatch, 0.1f);
+    }
+    mlp.Backward(weights.data());
+    mlp.TransposeInputs();
+  }
+
+  NetworkShape shape = FitProblem().Shape();
+  BatchedMlp<float> mlp;
+  AlignedVector<float> weights, input, residuals;
+};
+
+void BM_Forward(benchmark::State& state) {
+  Batch batch;
+  for (auto _ : state) {
+    batch.mlp.Forward(batch.weights.data(), batch.input.data());
+    benchmark::DoNotOptimize(batch.mlp.output());
+  }
+  CountSamples(state, kernels::kBatch);
+}
+BENCHMARK(BM_Forward);
+
+void BM_Backward(benchmark::State& state) {
+  Batch batch;
+  for (auto _ : state) {
+    batch.mlp.Backward(batch.weights.data());
+    benchmark::DoNotOptimize(batch.mlp.delta(0));
+  }
+  CountSamples(state, kernels::kBatch);
+}
+BENCHMARK(BM_Backward);
+
+// Multiplications and additions of J'J for one sample (normal_equations.h), pair products left out.
+double HessianFlops(const NetworkShape& shape) {
+  double flops = 0.0;
+  for (int l = 0; l < shape.num_layers(); ++l) {
+    const double out = shape.out(l), in = shape.in(l) + 1;
+    flops += 2.0 * (out * (out + 1) / 2) * (in * (in + 1) / 2);
+    for (int m = l + 1; m < shape.num_layers(); ++m) {
+      flops += 2.0 * out * shape.out(m) * in * (shape.in(m) + 1);
+    }
+  }
+  return flops;
+}
+
+// J'J and J'r of a batch.
+void BM_NormalEquations(benchmark::State& state) {
+  const Batch batch;
+  NormalEquations<float> sums(batch.shape);
+  for (auto _ : state) {
+    sums.AddBatch(batch.mlp, batch.residuals.data());
+    benchmark::ClobberMemory();
+  }
+  CountSamples(state, kernels::kBatch);
+  CountFlops(state,
+             HessianFlops(batch.shape) * kernels::kBatch * static_cast<double>(state.iterations()));
+}
+BENCHMARK(BM_NormalEquations)->Unit(benchmark::kMicrosecond);
 
 // Args: samples, threads, 1 for double precision.
 void BM_Linearize(benchmark::State& state) {
@@ -123,9 +214,38 @@ BENCHMARK(BM_EvaluateJacobian)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
-void EvaluateRepeatedly(const Brdf& brdf, benchmark::State& state) {
+std::vector<DirectionPair> Pairs(std::size_t count) {
   std::vector<DirectionPair> pairs;
-  for (const BrdfSample& s : Samples(16384)) pairs.push_back(s.pair);
+  for (const BrdfSample& s : Samples(count)) pairs.push_back(s.pair);
+  return pairs;
+}
+
+void BM_Encode(benchmark::State& state) {
+  const std::vector<DirectionPair> pairs = Pairs(kernels::kBatch);
+  for (auto _ : state) {
+    for (const DirectionPair& pair : pairs) {
+      benchmark::DoNotOptimize(Encode(Encoding::kMultiscale, pair));
+    }
+  }
+  CountSamples(state, pairs.size());
+}
+BENCHMARK(BM_Encode);
+
+// In single precision, several pairs to an instruction.
+void BM_EncodeBatch(benchmark::State& state) {
+  const std::vector<DirectionPair> pairs = Pairs(kernels::kBatch);
+  AlignedVector<float> inputs(kEncodedSize * kernels::kBatch);
+  for (auto _ : state) {
+    kernels::EncodeMultiscale(&pairs[0].wi.x, inputs.data());
+    benchmark::DoNotOptimize(inputs.data());
+    benchmark::ClobberMemory();
+  }
+  CountSamples(state, pairs.size());
+}
+BENCHMARK(BM_EncodeBatch);
+
+void EvaluateRepeatedly(const Brdf& brdf, benchmark::State& state) {
+  const std::vector<DirectionPair> pairs = Pairs(16384);
   std::vector<Rgb> values(pairs.size());
   for (auto _ : state) {
     brdf.Evaluate(pairs, values);

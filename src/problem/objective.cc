@@ -289,10 +289,13 @@ class BatchedObjective final : public Objective {
   }
 
   static bool IsFinite(const Linearization& at) {
-    // A sum is finite only if all of its terms are.
+    // A sum is finite only if all of its terms are, and J'J is if its diagonal is, as |(J'J)_ij| is
+    // at most the larger one of (J'J)_ii and (J'J)_jj.
     double sum = at.cost;
     for (double value : at.gradient) sum += 0.0 * value;
-    for (double value : at.hessian) sum += 0.0 * value;
+    for (std::size_t i = 0; i < at.hessian.size(); i += at.gradient.size() + 1) {
+      sum += 0.0 * at.hessian[i];
+    }
     return std::isfinite(sum);
   }
 
