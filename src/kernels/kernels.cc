@@ -1,6 +1,8 @@
 // Written with Highway: this file is compiled once for each instruction set (foreach_target.h).
 #include "pbnbrdf/kernels/kernels.h"
 
+#include <limits>
+
 #include "disabled_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels.cc"
@@ -297,6 +299,33 @@ HWY_INLINE void AddAllRowProducts(T alpha, const T* x, int rows_x, int x_stride,
   }
 }
 
+template <typename T>
+HWY_INLINE void AllLogResiduals(const T* z, const double* targets, const double* cos_i,
+                                double* residuals, double* slopes) {
+  const hn::ScalableTag<double> d;
+  const hn::Rebind<T, decltype(d)> from;
+  using V = hn::Vec<decltype(d)>;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const V one = hn::Set(d, 1.0);
+  for (int k = 0; k < 3 * kBatch; k += static_cast<int>(hn::Lanes(d))) {
+    V x;
+    if constexpr (sizeof(T) == sizeof(double)) {
+      x = hn::LoadU(d, z + k);
+    } else {
+      x = hn::PromoteTo(d, hn::LoadU(from, z + k));
+    }
+    const V cos = hn::LoadU(d, cos_i + k % kBatch);
+    const V f = hn::Expm1(d, x);
+    const V u = hn::Mul(f, cos);
+    // The functions above take neither what overflows nor what isn't finite.
+    const V overflow = hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 706.0)), hn::Set(d, kInfinity));
+    const V log = hn::Add(hn::MulAdd(hn::Zero(d), x, overflow), hn::Log1p(d, u));
+    hn::StoreU(hn::Sub(hn::LoadU(d, targets + k), log), d, residuals + k);
+    const V slope = hn::Div(hn::Mul(hn::Add(f, one), cos), hn::Add(u, one));
+    hn::StoreU(hn::Neg(slope), d, slopes + k);
+  }
+}
+
 // The exported names: one for each precision, as HWY_EXPORT wants plain functions.
 #define PBNBRDF_KERNELS(T, Suffix)                                                              \
   void Dense##Suffix(const T* layer, int out, int in, const T* x, T* y) {                       \
@@ -324,6 +353,10 @@ HWY_INLINE void AddAllRowProducts(T alpha, const T* x, int rows_x, int x_stride,
   }                                                                                             \
   void AddProduct##Suffix(const T* x, int p, const T* y, int q, int y_stride, double* c) {      \
     AddProductOf(x, p, y, q, y_stride, c);                                                      \
+  }                                                                                             \
+  void LogResiduals##Suffix(const T* z, const double* targets, const double* cos_i,             \
+                            double* residuals, double* slopes) {                                \
+    AllLogResiduals(z, targets, cos_i, residuals, slopes);                                      \
   }
 
 PBNBRDF_KERNELS(float, F)
@@ -352,6 +385,7 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   HWY_EXPORT(PairProducts##Suffix);                                                             \
   HWY_EXPORT(SummedPairProducts##Suffix);                                                       \
   HWY_EXPORT(AddProduct##Suffix);                                                               \
+  HWY_EXPORT(LogResiduals##Suffix);                                                             \
   template <>                                                                                   \
   void Dense(const T* layer, int out, int in, const T* x, T* y) {                               \
     HWY_DYNAMIC_DISPATCH(Dense##Suffix)(layer, out, in, x, y);                                  \
@@ -391,6 +425,11 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   template <>                                                                                   \
   void AddProduct(const T* x, int p, const T* y, int q, int y_stride, double* c) {              \
     HWY_DYNAMIC_DISPATCH(AddProduct##Suffix)(x, p, y, q, y_stride, c);                          \
+  }                                                                                             \
+  template <>                                                                                   \
+  void LogResiduals(const T* z, const double* targets, const double* cos_i, double* residuals,  \
+                    double* slopes) {                                                           \
+    HWY_DYNAMIC_DISPATCH(LogResiduals##Suffix)(z, targets, cos_i, residuals, slopes);           \
   }
 
 PBNBRDF_DISPATCH(float, F)

@@ -12,7 +12,6 @@
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/problem/normal_equations.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
-#include "pbnbrdf/residuals/log_residual.h"
 
 namespace pbnbrdf {
 namespace {
@@ -51,12 +50,12 @@ class PointTerm {
   PointTerm(double weight, const FitProblem& problem, std::span<const BrdfSample> samples)
       : weight_(weight / static_cast<double>(samples.size())),
         loss_(MakeLoss(problem.loss, problem.loss_scale)) {
+    if (weight == 0.0) return;
     residuals_.reserve(samples.size());
     for (const BrdfSample& s : samples) residuals_.emplace_back(s.value, CosI(s.pair));
   }
 
   int rows() const { return weight_ > 0.0 ? kRows : 0; }
-  const Term& residual(std::size_t sample) const { return residuals_[sample]; }
 
   double Cost(std::size_t sample, const double* z) const {
     if (weight_ == 0.0) return 0.0;
@@ -91,13 +90,72 @@ class PointTerm {
   std::vector<Term> residuals_;  // one a sample
 };
 
-// |log1p(f cos_i) - log1p(max(0, f^) cos_i)|, summed over the channels.
-double AbsLogError(const LogResidual& residual, const double* z) {
-  const double clamped[kChannels] = {std::max(z[0], 0.0), std::max(z[1], 0.0), std::max(z[2], 0.0)};
-  double r[kChannels];
-  residual(clamped, r);
-  return std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
-}
+// The log term, a batch at a time: LogResidual and its derivative, vectorised.
+class LogTerm {
+ public:
+  // Residuals and slopes d r_c / d z_c of a batch, by feature.
+  struct Batch {
+    AlignedVector<double> residuals = AlignedVector<double>(kChannels * kBatch);
+    AlignedVector<double> slopes = AlignedVector<double>(kChannels * kBatch);
+  };
+
+  // weight: of the mean over the samples; 0 makes it an absent term, without rows.
+  LogTerm(double weight, const FitProblem& problem, std::span<const BrdfSample> samples)
+      : weight_(weight / static_cast<double>(samples.size())),
+        loss_(MakeLoss(problem.loss, problem.loss_scale)) {
+    const std::size_t padded = (samples.size() + kBatch - 1) / kBatch * kBatch;
+    cos_i_.resize(padded);
+    targets_.resize(kChannels * padded);
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      cos_i_[n] = CosI(samples[n].pair);
+      double* target = &targets_[n / kBatch * kChannels * kBatch + n % kBatch];
+      for (int c = 0; c < kChannels; ++c) {
+        target[c * kBatch] = std::log1p(samples[n].value[c] * cos_i_[n]);
+      }
+    }
+  }
+
+  int rows() const { return weight_ > 0.0 ? kChannels : 0; }
+
+  // z: the outputs at batch b, by feature.
+  template <typename T>
+  void Evaluate(std::size_t b, const T* z, Batch* batch) const {
+    kernels::LogResiduals(z, &targets_[b * kChannels * kBatch], &cos_i_[b * kBatch],
+                          batch->residuals.data(), batch->slopes.data());
+  }
+
+  double Cost(const Batch& batch, int n) const { return Robust(batch, n).cost; }
+
+  // Calls set(row, residual, gradient with respect to z) for each row of the batch's sample n.
+  // Returns the cost.
+  template <typename SetRow>
+  double Linearize(const Batch& batch, int n, SetRow set) const {
+    if (weight_ == 0.0) return 0.0;
+    const RobustWeight robust = Robust(batch, n);
+    for (int c = 0; c < kChannels; ++c) {
+      double gradient[kChannels] = {};
+      gradient[c] = robust.row_scale * batch.slopes[c * kBatch + n];
+      set(c, robust.row_scale * batch.residuals[c * kBatch + n], gradient);
+    }
+    return robust.cost;
+  }
+
+ private:
+  RobustWeight Robust(const Batch& batch, int n) const {
+    if (weight_ == 0.0) return {0.0, 0.0};
+    double squared_norm = 0.0;
+    for (int c = 0; c < kChannels; ++c) {
+      const double r = batch.residuals[c * kBatch + n];
+      squared_norm += r * r;
+    }
+    return Robustify(loss_.get(), weight_, squared_norm);
+  }
+
+  double weight_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  AlignedVector<double> cos_i_;    // batch after batch
+  AlignedVector<double> targets_;  // log1p(f cos_i), batch after batch, each by feature
+};
 
 template <typename T>
 class BatchedObjective final : public Objective {
@@ -117,11 +175,17 @@ class BatchedObjective final : public Objective {
 
   double Cost(const double* weights) override {
     const AlignedVector<T> w = Converted(weights);
-    return Sum(w,
-               [&](std::size_t sample, const double* z) {
-                 return log_.Cost(sample, z) + chromaticity_.Cost(sample, z);
-               }) +
-           energy_.Cost(w.data());
+    const double cost = Sum(w, [&](std::size_t b, const T* output, LogTerm::Batch* log) {
+      log_.Evaluate(b, output, log);
+      double sum = 0.0;
+      for (int n = 0; n < inputs_.batch_size(b); ++n) {
+        double z[kChannels];
+        LoadOutput(output, n, z);
+        sum += log_.Cost(*log, n) + chromaticity_.Cost(b * kBatch + n, z);
+      }
+      return sum;
+    });
+    return cost + energy_.Cost(w.data());
   }
 
   bool Gradient(const double* weights, double* cost, double* gradient) override {
@@ -151,8 +215,14 @@ class BatchedObjective final : public Objective {
   }
 
   double MeanAbsLogError(const double* weights) override {
-    const double sum = Sum(Converted(weights), [&](std::size_t sample, const double* z) {
-      return AbsLogError(log_.residual(sample), z);
+    const double sum = Sum(Converted(weights), [&](std::size_t b, T* output, LogTerm::Batch* log) {
+      for (int k = 0; k < kChannels * kBatch; ++k) output[k] = std::max(output[k], T(0));
+      log_.Evaluate(b, output, log);
+      double batch_sum = 0.0;
+      for (int n = 0; n < inputs_.batch_size(b); ++n) {
+        for (int c = 0; c < kChannels; ++c) batch_sum += std::abs(log->residuals[c * kBatch + n]);
+      }
+      return batch_sum;
     });
     return sum / static_cast<double>(kChannels * inputs_.size());
   }
@@ -192,6 +262,7 @@ class BatchedObjective final : public Objective {
     BatchedMlp<T> mlp;
     AlignedVector<T> residuals;  // row after row
     NormalEquations<T> sums;
+    LogTerm::Batch log;
     double cost = 0.0;
   };
 
@@ -202,6 +273,7 @@ class BatchedObjective final : public Objective {
     BatchedMlp<T> mlp;
     AlignedVector<T> batch_sum;
     std::vector<double> sum;
+    LogTerm::Batch log;
     double cost = 0.0;
   };
 
@@ -213,20 +285,17 @@ class BatchedObjective final : public Objective {
     for (int c = 0; c < kChannels; ++c) z[c] = static_cast<double>(output[c * kBatch + n]);
   }
 
-  // The sum over samples of value(sample, z).
+  // The sum over batches of value(batch, outputs by feature, space for the log term).
   template <typename Value>
   double Sum(const AlignedVector<T>& w, Value value) const {
     const std::size_t partitions = PartitionCount(inputs_.num_batches());
     std::vector<double> sums(partitions, 0.0);
     tbb::parallel_for(std::size_t{0}, partitions, [&](std::size_t p) {
       BatchedMlp<T> mlp(shape_, 0);
+      LogTerm::Batch log;
       for (std::size_t b = p; b < inputs_.num_batches(); b += partitions) {
         mlp.Forward(w.data(), inputs_.batch(b));
-        for (int n = 0; n < inputs_.batch_size(b); ++n) {
-          double z[kChannels];
-          LoadOutput(mlp.output(), n, z);
-          sums[p] += value(b * kBatch + n, z);
-        }
+        sums[p] += value(b, mlp.output(), &log);
       }
     });
     double total = 0.0;
@@ -237,6 +306,7 @@ class BatchedObjective final : public Objective {
   void LinearizeBatch(const T* w, std::size_t b, Worker* worker) const {
     BatchedMlp<T>& mlp = worker->mlp;
     mlp.Forward(w, inputs_.batch(b));
+    log_.Evaluate(b, mlp.output(), &worker->log);
     const int size = inputs_.batch_size(b);
     if (size < kBatch) ClearRows(worker);
     for (int n = 0; n < size; ++n) {
@@ -250,7 +320,7 @@ class BatchedObjective final : public Objective {
         };
       };
       const std::size_t sample = b * kBatch + n;
-      worker->cost += log_.Linearize(sample, z, set_from(0));
+      worker->cost += log_.Linearize(worker->log, n, set_from(0));
       worker->cost += chromaticity_.Linearize(sample, z, set_from(log_.rows()));
     }
     mlp.Backward(w);
@@ -261,6 +331,7 @@ class BatchedObjective final : public Objective {
   void AddGradientOfBatch(const T* w, std::size_t b, GradientWorker* worker) const {
     BatchedMlp<T>& mlp = worker->mlp;
     mlp.Forward(w, inputs_.batch(b));
+    log_.Evaluate(b, mlp.output(), &worker->log);
     T* to = mlp.output_gradient(0);
     std::fill(to, to + kChannels * kBatch, T(0));
     for (int n = 0; n < inputs_.batch_size(b); ++n) {
@@ -269,7 +340,7 @@ class BatchedObjective final : public Objective {
       const auto add = [&](int, double residual, const double* gradient) {
         for (int c = 0; c < kChannels; ++c) sum[c] += residual * gradient[c];
       };
-      worker->cost += log_.Linearize(b * kBatch + n, z, add);
+      worker->cost += log_.Linearize(worker->log, n, add);
       worker->cost += chromaticity_.Linearize(b * kBatch + n, z, add);
       for (int c = 0; c < kChannels; ++c) to[c * kBatch + n] = static_cast<T>(sum[c]);
     }
@@ -301,7 +372,7 @@ class BatchedObjective final : public Objective {
 
   NetworkShape shape_;
   EncodedBatches<T> inputs_;
-  PointTerm<LogResidual> log_;
+  LogTerm log_;
   PointTerm<ChromaticityResidual> chromaticity_;
   EnergyStrata<T> energy_;
   std::vector<std::unique_ptr<Worker>> workers_;

@@ -203,6 +203,39 @@ TYPED_TEST(Kernels, AddRowProductsAdds) {
   }
 }
 
+TYPED_TEST(Kernels, LogResidualsHaveTheirSlopes) {
+  using T = TypeParam;
+  std::vector<T> z = Random<T>(3 * kBatch, 12);
+  for (std::size_t k = 0; k < z.size(); ++k)
+    z[k] *= k % 3 == 0 ? T(1e-6) : k % 3 == 1 ? T(1) : T(20);
+  const auto targets = RandomNumbers(3 * kBatch, 0.0, 3.0, 13);
+  const auto cos_i = RandomNumbers(kBatch, 0.0, 1.0, 14);
+  ForEachInstructionSet([&](const char* set) {
+    std::vector<double> residuals(3 * kBatch), slopes(3 * kBatch);
+    LogResiduals(z.data(), targets.data(), cos_i.data(), residuals.data(), slopes.data());
+    for (int k = 0; k < 3 * kBatch; ++k) {
+      const double x = z[k], cos = cos_i[k % kBatch], log = std::log1p(std::expm1(x) * cos);
+      EXPECT_NEAR(residuals[k], targets[k] - log, 2e-15 * (targets[k] + std::abs(log))) << set;
+      const double slope = -std::exp(x) * cos / (1.0 + std::expm1(x) * cos);
+      EXPECT_NEAR(slopes[k], slope, -4e-15 * slope + 1e-15) << set;
+    }
+  });
+}
+
+TYPED_TEST(Kernels, LogResidualsPassOnWhatIsNotFinite) {
+  using T = TypeParam;
+  constexpr T kInfinity = std::numeric_limits<T>::infinity();
+  const std::vector<double> targets(3 * kBatch, 1.0), cos_i(kBatch, 0.5);
+  for (T bad : {T(1e4), kInfinity, -kInfinity, std::numeric_limits<T>::quiet_NaN()}) {
+    const std::vector<T> z(3 * kBatch, bad);
+    ForEachInstructionSet([&](const char* set) {
+      std::vector<double> residuals(3 * kBatch), slopes(3 * kBatch);
+      LogResiduals(z.data(), targets.data(), cos_i.data(), residuals.data(), slopes.data());
+      for (double r : residuals) EXPECT_FALSE(std::isfinite(r)) << set << ", z = " << bad;
+    });
+  }
+}
+
 TYPED_TEST(Kernels, ExpIsAccurate) {
   using T = TypeParam;
   std::vector<T> x = Random<T>(kBatch, 11);

@@ -63,6 +63,13 @@ template <typename T>
 void AddRowProducts(T alpha, const T* x, int rows_x, int x_stride, const T* y, int rows_y,
                     int y_stride, int size, T* c, int c_stride);
 
+// The log term (eq. 6) and its derivative, in double precision: with u_c = expm1(z_c) cos_i,
+//   residuals_c = targets_c - log1p(u_c),  slopes_c = d residuals_c / d z_c.
+// By feature, 3 x kBatch; cos_i kBatch. Residuals aren't finite where z isn't or is above 706.
+template <typename T>
+void LogResiduals(const T* z, const double* targets, const double* cos_i, double* residuals,
+                  double* slopes);
+
 // The instruction set in use: "AVX3", "AVX2", ...
 const char* InstructionSet();
 

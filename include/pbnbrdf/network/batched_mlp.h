@@ -29,6 +29,7 @@ class BatchedMlp {
 
   // z, before the output unit. By feature, kChannels x kBatch.
   const T* output() const { return activations_.back().data(); }
+  T* output() { return activations_.back().data(); }
 
   // To be filled before Backward. By feature, kChannels x kBatch.
   T* output_gradient(int row) { return deltas_.back().data() + row * kChannels * kBatch; }
