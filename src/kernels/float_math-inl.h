@@ -18,9 +18,13 @@ namespace pbnbrdf::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// HWY_TARGET is smaller for better instruction sets.
+#undef PBNBRDF_HAS_AVX512
+#define PBNBRDF_HAS_AVX512 (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3)
+
 // AVX-512 approximates 1 / x and 1 / sqrt(x) to 14 bits, which one step of Newton's method doubles.
 // Elsewhere there are fewer bits, and division is fast enough.
-inline constexpr bool kHas14BitReciprocals = HWY_TARGET == HWY_AVX3;
+inline constexpr bool kHas14BitReciprocals = PBNBRDF_HAS_AVX512;
 
 // 1 / x for normal x, relative error below 2e-7.
 template <class D, class V>
@@ -47,7 +51,7 @@ HWY_INLINE V Polynomial(D d, V x, const float (&coefficients)[kSize]) {
   return sum;
 }
 
-#if HWY_TARGET == HWY_AVX3
+#if PBNBRDF_HAS_AVX512
 // values[index mod kTanhIntervals] in each lane.
 HWY_INLINE hn::Vec512<float> LookUp(const float* values, hn::Vec512<std::int32_t> index) {
   return hn::Vec512<float>{
