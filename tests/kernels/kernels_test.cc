@@ -1,4 +1,5 @@
-// Each kernel against the plain loops that define it, at sizes around those of a register block.
+// Each kernel against the plain loops that define it, at sizes around those of a register block and
+// on each instruction set.
 #include "pbnbrdf/kernels/kernels.h"
 
 #include "instruction_sets.h"
@@ -25,34 +26,40 @@ TYPED_TEST_SUITE(Kernels, Precisions);
 
 TYPED_TEST(Kernels, DenseIsWxPlusB) {
   using T = TypeParam;
-  for (auto [out, in] : {std::pair(1, 1), {3, 22}, {4, 6}, {21, 6}, {21, 21}, {65, 33}}) {
-    const auto layer = Random<T>(out * (in + 1), 1), x = Random<T>(in * kBatch, 2);
-    std::vector<T> y(out * kBatch);
-    Dense(layer.data(), out, in, x.data(), y.data());
-    for (int o = 0; o < out; ++o) {
-      for (int n = 0; n < kBatch; ++n) {
-        double sum = layer[o * (in + 1) + in];
-        for (int i = 0; i < in; ++i) sum += double(layer[o * (in + 1) + i]) * x[i * kBatch + n];
-        ASSERT_NEAR(y[o * kBatch + n], sum, this->kTolerance) << out << " x " << in;
+  ForEachInstructionSet([&](const char* set) {
+    SCOPED_TRACE(set);
+    for (auto [out, in] : {std::pair(1, 1), {3, 22}, {4, 6}, {21, 6}, {21, 21}, {65, 33}}) {
+      const auto layer = Random<T>(out * (in + 1), 1), x = Random<T>(in * kBatch, 2);
+      std::vector<T> y(out * kBatch);
+      Dense(layer.data(), out, in, x.data(), y.data());
+      for (int o = 0; o < out; ++o) {
+        for (int n = 0; n < kBatch; ++n) {
+          double sum = layer[o * (in + 1) + in];
+          for (int i = 0; i < in; ++i) sum += double(layer[o * (in + 1) + i]) * x[i * kBatch + n];
+          ASSERT_NEAR(y[o * kBatch + n], sum, this->kTolerance) << out << " x " << in;
+        }
       }
     }
-  }
+  });
 }
 
 TYPED_TEST(Kernels, DenseTransposedIsWTransposedY) {
   using T = TypeParam;
-  for (auto [out, in] : {std::pair(1, 1), {3, 22}, {21, 6}, {33, 65}}) {
-    const auto layer = Random<T>(out * (in + 1), 3), y = Random<T>(out * kBatch, 4);
-    std::vector<T> x(in * kBatch);
-    DenseTransposed(layer.data(), out, in, y.data(), x.data());
-    for (int i = 0; i < in; ++i) {
-      for (int n = 0; n < kBatch; ++n) {
-        double sum = 0.0;
-        for (int o = 0; o < out; ++o) sum += double(layer[o * (in + 1) + i]) * y[o * kBatch + n];
-        ASSERT_NEAR(x[i * kBatch + n], sum, this->kTolerance) << out << " x " << in;
+  ForEachInstructionSet([&](const char* set) {
+    SCOPED_TRACE(set);
+    for (auto [out, in] : {std::pair(1, 1), {3, 22}, {21, 6}, {33, 65}}) {
+      const auto layer = Random<T>(out * (in + 1), 3), y = Random<T>(out * kBatch, 4);
+      std::vector<T> x(in * kBatch);
+      DenseTransposed(layer.data(), out, in, y.data(), x.data());
+      for (int i = 0; i < in; ++i) {
+        for (int n = 0; n < kBatch; ++n) {
+          double sum = 0.0;
+          for (int o = 0; o < out; ++o) sum += double(layer[o * (in + 1) + i]) * y[o * kBatch + n];
+          ASSERT_NEAR(x[i * kBatch + n], sum, this->kTolerance) << out << " x " << in;
+        }
       }
     }
-  }
+  });
 }
 
 // From denormal to infinite, and densely where tanh bends.
@@ -102,65 +109,74 @@ TYPED_TEST(Kernels, TanhIsOddAndBoundedAndKeepsNaN) {
 
 TYPED_TEST(Kernels, DenseTanhIsDenseThenTanh) {
   using T = TypeParam;
-  for (auto [out, in] : {std::pair(1, 1), {3, 22}, {21, 6}, {21, 21}, {65, 33}}) {
-    const auto layer = Random<T>(out * (in + 1), 1), x = Random<T>(in * kBatch, 2);
-    std::vector<T> y(out * kBatch), expected(out * kBatch);
-    DenseTanh(layer.data(), out, in, x.data(), y.data());
-    Dense(layer.data(), out, in, x.data(), expected.data());
-    Tanh(expected.data(), expected.size());
-    EXPECT_EQ(y, expected) << out << " x " << in;
-  }
+  ForEachInstructionSet([&](const char* set) {
+    SCOPED_TRACE(set);
+    for (auto [out, in] : {std::pair(1, 1), {3, 22}, {21, 6}, {21, 21}, {65, 33}}) {
+      const auto layer = Random<T>(out * (in + 1), 1), x = Random<T>(in * kBatch, 2);
+      std::vector<T> y(out * kBatch), expected(out * kBatch);
+      DenseTanh(layer.data(), out, in, x.data(), y.data());
+      Dense(layer.data(), out, in, x.data(), expected.data());
+      Tanh(expected.data(), expected.size());
+      EXPECT_EQ(y, expected) << out << " x " << in;
+    }
+  });
 }
 
 TYPED_TEST(Kernels, PairProductsAreInOrderWithZerosBehind) {
   using T = TypeParam;
-  for (auto [na, nb, symmetric] :
-       {std::tuple(21, 21, true), {7, 22, false}, {1, 1, true}, {3, 3, true}, {33, 17, false}}) {
-    const auto a = Random<T>(kBatch * Padded(na) + kPad, 5);
-    const auto b = symmetric ? a : Random<T>(kBatch * Padded(nb) + kPad, 6);
-    const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
-    const int stride = pairs + kPad + 3;
-    std::vector<T> out(kBatch * stride, T(7));
-    PairProducts(a.data(), na, b.data(), nb, symmetric, out.data(), stride);
-    for (int n = 0; n < kBatch; ++n) {
-      const T* at = out.data() + n * stride;
-      for (int i = 0; i < na; ++i) {
-        for (int j = symmetric ? i : 0; j < nb; ++j, ++at) {
-          ASSERT_EQ(*at, a[n * Padded(na) + i] * b[n * Padded(nb) + j]) << na << " x " << nb;
+  ForEachInstructionSet([&](const char* set) {
+    SCOPED_TRACE(set);
+    for (auto [na, nb, symmetric] :
+         {std::tuple(21, 21, true), {7, 22, false}, {1, 1, true}, {3, 3, true}, {33, 17, false}}) {
+      const auto a = Random<T>(kBatch * Padded(na) + kPad, 5);
+      const auto b = symmetric ? a : Random<T>(kBatch * Padded(nb) + kPad, 6);
+      const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
+      const int stride = pairs + kPad + 3;
+      std::vector<T> out(kBatch * stride, T(7));
+      PairProducts(a.data(), na, b.data(), nb, symmetric, out.data(), stride);
+      for (int n = 0; n < kBatch; ++n) {
+        const T* at = out.data() + n * stride;
+        for (int i = 0; i < na; ++i) {
+          for (int j = symmetric ? i : 0; j < nb; ++j, ++at) {
+            ASSERT_EQ(*at, a[n * Padded(na) + i] * b[n * Padded(nb) + j]) << na << " x " << nb;
+          }
         }
+        for (int k = 0; k < kPad; ++k) ASSERT_EQ(at[k], T(0));
+        for (int k = kPad; k < kPad + 3; ++k) ASSERT_EQ(at[k], T(7));
       }
-      for (int k = 0; k < kPad; ++k) ASSERT_EQ(at[k], T(0));
-      for (int k = kPad; k < kPad + 3; ++k) ASSERT_EQ(at[k], T(7));
     }
-  }
+  });
 }
 
 TYPED_TEST(Kernels, SummedPairProductsSumOverRows) {
   using T = TypeParam;
-  for (auto [na, nb, rows, symmetric] : {std::tuple(21, 21, 3, true),
-                                         {21, 3, 4, false},
-                                         {7, 22, 1, false},
-                                         {1, 1, 1, true},
-                                         {33, 17, 2, false}}) {
-    const auto a = Random<T>(rows * na * kBatch, 5);
-    const auto b = symmetric ? a : Random<T>(rows * nb * kBatch, 6);
-    const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
-    std::vector<T> out((pairs + 1) * kBatch, T(7));
-    SummedPairProducts(a.data(), na, b.data(), nb, rows, symmetric, out.data());
-    const T* at = out.data();
-    for (int i = 0; i < na; ++i) {
-      for (int j = symmetric ? i : 0; j < nb; ++j) {
-        for (int n = 0; n < kBatch; ++n, ++at) {
-          double sum = 0.0;
-          for (int r = 0; r < rows; ++r) {
-            sum += double(a[(r * na + i) * kBatch + n]) * b[(r * nb + j) * kBatch + n];
+  ForEachInstructionSet([&](const char* set) {
+    SCOPED_TRACE(set);
+    for (auto [na, nb, rows, symmetric] : {std::tuple(21, 21, 3, true),
+                                           {21, 3, 4, false},
+                                           {7, 22, 1, false},
+                                           {1, 1, 1, true},
+                                           {33, 17, 2, false}}) {
+      const auto a = Random<T>(rows * na * kBatch, 5);
+      const auto b = symmetric ? a : Random<T>(rows * nb * kBatch, 6);
+      const int pairs = symmetric ? na * (na + 1) / 2 : na * nb;
+      std::vector<T> out((pairs + 1) * kBatch, T(7));
+      SummedPairProducts(a.data(), na, b.data(), nb, rows, symmetric, out.data());
+      const T* at = out.data();
+      for (int i = 0; i < na; ++i) {
+        for (int j = symmetric ? i : 0; j < nb; ++j) {
+          for (int n = 0; n < kBatch; ++n, ++at) {
+            double sum = 0.0;
+            for (int r = 0; r < rows; ++r) {
+              sum += double(a[(r * na + i) * kBatch + n]) * b[(r * nb + j) * kBatch + n];
+            }
+            ASSERT_NEAR(*at, sum, this->kTolerance) << na << " x " << nb;
           }
-          ASSERT_NEAR(*at, sum, this->kTolerance) << na << " x " << nb;
         }
       }
+      for (int n = 0; n < kBatch; ++n) ASSERT_EQ(at[n], T(7));
     }
-    for (int n = 0; n < kBatch; ++n) ASSERT_EQ(at[n], T(7));
-  }
+  });
 }
 
 TYPED_TEST(Kernels, AddProductAdds) {
@@ -186,21 +202,24 @@ TYPED_TEST(Kernels, AddProductAdds) {
 
 TYPED_TEST(Kernels, AddRowProductsAdds) {
   using T = TypeParam;
-  for (auto [p, q, size] :
-       {std::tuple(1, 1, 1), {4, 4, 128}, {5, 7, 31}, {21, 22, 128}, {3, 9, 0}}) {
-    const int stride = size + 3;
-    const auto x = Random<T>(p * stride, 9), y = Random<T>(q * stride, 10);
-    std::vector<T> c(p * (q + 1), T(0.5));
-    AddRowProducts(T(-2), x.data(), p, stride, y.data(), q, stride, size, c.data(), q + 1);
-    for (int i = 0; i < p; ++i) {
-      for (int j = 0; j < q; ++j) {
-        double sum = 0.5;
-        for (int k = 0; k < size; ++k) sum -= 2.0 * x[i * stride + k] * y[j * stride + k];
-        ASSERT_NEAR(c[i * (q + 1) + j], sum, 2.0 * this->kTolerance) << p << " x " << q;
+  ForEachInstructionSet([&](const char* set) {
+    SCOPED_TRACE(set);
+    for (auto [p, q, size] :
+         {std::tuple(1, 1, 1), {4, 4, 128}, {5, 7, 31}, {21, 22, 128}, {3, 9, 0}}) {
+      const int stride = size + 3;
+      const auto x = Random<T>(p * stride, 9), y = Random<T>(q * stride, 10);
+      std::vector<T> c(p * (q + 1), T(0.5));
+      AddRowProducts(T(-2), x.data(), p, stride, y.data(), q, stride, size, c.data(), q + 1);
+      for (int i = 0; i < p; ++i) {
+        for (int j = 0; j < q; ++j) {
+          double sum = 0.5;
+          for (int k = 0; k < size; ++k) sum -= 2.0 * x[i * stride + k] * y[j * stride + k];
+          ASSERT_NEAR(c[i * (q + 1) + j], sum, 2.0 * this->kTolerance) << p << " x " << q;
+        }
+        ASSERT_EQ(c[i * (q + 1) + q], T(0.5));
       }
-      ASSERT_EQ(c[i * (q + 1) + q], T(0.5));
     }
-  }
+  });
 }
 
 TYPED_TEST(Kernels, LogResidualsHaveTheirSlopes) {
