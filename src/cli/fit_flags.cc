@@ -18,7 +18,8 @@ DEFINE_int32(energy_theta, 64, "its quadrature's elevations of the half vector")
 DEFINE_int32(energy_phi, 32, "its quadrature's azimuths of the half vector");
 DEFINE_string(loss, "soft_l1",
               "robust loss of the log and chromaticity terms: "
-              "l2 | soft_l1 | huber | cauchy");
+              "l2 | soft_l1 | huber | cauchy | absolute, the papers' own sum of all "
+              "terms, for lbfgs and, always, adam");
 DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square to linear");
 DEFINE_string(sampling, "highlight",
               "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
@@ -34,6 +35,7 @@ DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations (adam: 
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_uint64(batch, 512, "adam: samples a step");
 DEFINE_double(learning_rate, 5e-4, "adam: step size");
+DEFINE_int32(energy_angles, 2, "adam: random incident angles a step of the energy term");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
 
 namespace pbnbrdf::cli {
@@ -91,6 +93,7 @@ FitOptions ParseOptions() {
   options.function_tolerance = FLAGS_function_tolerance;
   options.adam.batch = FLAGS_batch;
   options.adam.learning_rate = FLAGS_learning_rate;
+  options.adam.energy_angles = FLAGS_energy_angles;
   options.threads = FLAGS_threads;
   return options;
 }
@@ -105,7 +108,7 @@ std::vector<FlagGroup> ProblemFlags() {
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
            {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance", "batch",
-            "learning_rate"}}};
+            "learning_rate", "energy_angles"}}};
 }
 
 FitFlags ParseFitFlags() {

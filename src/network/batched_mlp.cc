@@ -1,7 +1,5 @@
 #include "pbnbrdf/network/batched_mlp.h"
 
-#include <algorithm>
-
 namespace pbnbrdf {
 namespace {
 
@@ -10,17 +8,14 @@ using kernels::kBatch;
 template <typename T>
 void ActivateAll(Activation activation, T* x, std::size_t count) {
   if (activation == Activation::kTanh) return kernels::Tanh(x, count);
-  for (std::size_t i = 0; i < count; ++i) x[i] = std::max(x[i], T(0));
+  kernels::Relu(x, count);
 }
 
 // delta *= the activation's slope, from its value y.
 template <typename T>
 void MultiplySlopes(Activation activation, const T* y, std::size_t count, T* delta) {
-  if (activation == Activation::kTanh) {
-    for (std::size_t i = 0; i < count; ++i) delta[i] *= T(1) - y[i] * y[i];
-  } else {
-    for (std::size_t i = 0; i < count; ++i) delta[i] = y[i] > T(0) ? delta[i] : T(0);
-  }
+  if (activation == Activation::kRelu) return kernels::ReluSlopes(y, count, delta);
+  for (std::size_t i = 0; i < count; ++i) delta[i] *= T(1) - y[i] * y[i];
 }
 
 // to[n * stride + i] = from[i * kBatch + n], in tiles that stay in the cache.

@@ -50,6 +50,7 @@ void FitProblem::Validate() const {
 std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
   switch (loss) {
     case Loss::kL2:
+    case Loss::kAbsolute:
       return nullptr;
     case Loss::kSoftL1:
       return std::make_unique<ceres::SoftLOneLoss>(scale);

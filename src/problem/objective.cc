@@ -50,6 +50,7 @@ class PointTerm {
   // weight: of the mean over the samples; 0 makes it an absent term, without rows.
   PointTerm(double weight, const FitProblem& problem, std::span<const BrdfSample> samples)
       : weight_(weight / static_cast<double>(samples.size())),
+        absolute_(problem.loss == Loss::kAbsolute),
         loss_(MakeLoss(problem.loss, problem.loss_scale)) {
     residuals_.reserve(samples.size());
     for (const BrdfSample& s : samples) residuals_.emplace_back(s.value, CosI(s.pair));
@@ -62,8 +63,12 @@ class PointTerm {
     if (weight_ == 0.0) return 0.0;
     double r[kRows];
     residuals_[sample](z, r);
-    double squared_norm = 0.0;
-    for (double value : r) squared_norm += value * value;
+    double squared_norm = 0.0, absolute_sum = 0.0;
+    for (double value : r) {
+      squared_norm += value * value;
+      absolute_sum += std::abs(value);
+    }
+    if (absolute_) return weight_ / kRows * absolute_sum;
     return Robustify(loss_.get(), weight_, squared_norm).cost;
   }
 
@@ -75,6 +80,7 @@ class PointTerm {
     Jet outputs[kChannels], r[kRows];
     for (int c = 0; c < kChannels; ++c) outputs[c] = Jet(z[c], c);
     residuals_[sample](outputs, r);
+    if (absolute_) return SetSigns(r, set);
     double squared_norm = 0.0;
     for (const Jet& value : r) squared_norm += value.a * value.a;
     const RobustWeight robust = Robustify(loss_.get(), weight_, squared_norm);
@@ -86,7 +92,20 @@ class PointTerm {
   }
 
  private:
+  // The sum of absolute values has the gradient of a sum of products with the signs.
+  template <typename Jet, typename SetRow>
+  double SetSigns(const Jet* r, SetRow set) const {
+    double sum = 0.0;
+    for (int row = 0; row < kRows; ++row) {
+      const double sign = (r[row].a > 0.0) - (r[row].a < 0.0);
+      set(row, weight_ / kRows * sign, r[row].v.data());
+      sum += std::abs(r[row].a);
+    }
+    return weight_ / kRows * sum;
+  }
+
   double weight_;
+  bool absolute_;
   std::unique_ptr<ceres::LossFunction> loss_;
   std::vector<Term> residuals_;  // one a sample
 };
