@@ -8,6 +8,8 @@ DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
 DEFINE_string(encoding, "multiscale", "the network's input: cartesian | reciprocal | multiscale");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
+DEFINE_string(initialization, "glorot",
+              "initial weights: glorot, by layer | nbrdf, small, better with adam");
 DEFINE_string(terms, "log,energy",
               "terms of the cost: log (eq. 6), chromaticity (eq. 7), energy (eq. 5)");
 DEFINE_double(log_weight, 1.0, "weight of the log term");
@@ -67,6 +69,7 @@ FitProblem ParseProblem() {
   problem.encoding = ParseName(kEncodings, "encoding", FLAGS_encoding);
   problem.hidden = ParseHidden(FLAGS_hidden);
   problem.activation = ParseName(kActivations, "activation", FLAGS_activation);
+  problem.initialization = ParseName(kInitializations, "initialization", FLAGS_initialization);
   problem.log_weight = terms.log ? FLAGS_log_weight : 0.0;
   problem.chromaticity_weight = terms.chromaticity ? FLAGS_chromaticity_weight : 0.0;
   problem.energy_weight = terms.energy ? FLAGS_energy_weight : 0.0;
@@ -101,7 +104,7 @@ FitOptions ParseOptions() {
 }  // namespace
 
 std::vector<FlagGroup> ProblemFlags() {
-  return {{"The network", {"encoding", "hidden", "activation", "precision"}},
+  return {{"The network", {"encoding", "hidden", "activation", "initialization", "precision"}},
           {"The terms",
            {"terms", "log_weight", "chromaticity_weight", "energy_weight", "energy_strata",
             "energy_theta", "energy_phi", "loss", "loss_scale"}},

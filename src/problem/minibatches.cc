@@ -39,9 +39,10 @@ void MinibatchStream::Draw(Minibatches* to) {
   to->samples.assign(to->count * to->BlocksPerStep() * Minibatches::kRows * kBatch, 0.0f);
   float* block = to->samples.data();
   for (std::size_t b = 0; b < to->count; ++b, ++next_) {
-    for (std::size_t n = 0; n < batch_; ++n) {
-      DrawSample(next_ * batch_ + n, block, n % kBatch);
-      if (n % kBatch == kBatch - 1 || n == batch_ - 1) block += Minibatches::kRows * kBatch;
+    const std::span<const std::uint32_t> drawn = DrawIndices(next_ * batch_);
+    for (std::size_t first = 0; first < batch_; first += kBatch) {
+      CopyBlock(drawn.subspan(first, std::min(kBatch, batch_ - first)), block);
+      block += Minibatches::kRows * kBatch;
     }
   }
   to->ends_epoch = next_ == per_epoch;
@@ -63,13 +64,21 @@ double MinibatchStream::Uniform() {
   return (static_cast<double>(random_() >> 32) + 0.5) * 0x1p-32;
 }
 
-// A step of the shuffle of Fisher and Yates: any of the samples that the epoch hasn't had yet.
-// Below 2^32 of them; std::shuffle differs between libraries.
-void MinibatchStream::DrawSample(std::size_t place, float* block, std::size_t lane) {
-  const std::size_t left = order_.size() - place;
-  std::swap(order_[place], order_[place + ((random_() >> 32) * left >> 32)]);
-  const float* row = rows_.data() + std::size_t{order_[place]} * Minibatches::kRows;
-  for (int i = 0; i < Minibatches::kRows; ++i) block[i * kBatch + lane] = row[i];
+// Steps of the shuffle of Fisher and Yates: a minibatch of the samples that the epoch hasn't had
+// yet. Below 2^32 of them; std::shuffle differs between libraries.
+std::span<const std::uint32_t> MinibatchStream::DrawIndices(std::size_t first) {
+  for (std::size_t place = first; place < first + batch_; ++place) {
+    const std::size_t left = order_.size() - place;
+    std::swap(order_[place], order_[place + ((random_() >> 32) * left >> 32)]);
+  }
+  return std::span(order_).subspan(first, batch_);
+}
+
+void MinibatchStream::CopyBlock(std::span<const std::uint32_t> indices, float* block) const {
+  for (std::size_t n = 0; n < indices.size(); ++n) {
+    const float* row = rows_.data() + std::size_t{indices[n]} * Minibatches::kRows;
+    for (int i = 0; i < Minibatches::kRows; ++i) block[i * kBatch + n] = row[i];
+  }
 }
 
 // As brdf/albedo.h, but on a grid that is shifted as a whole by random parts of its cells, lest the

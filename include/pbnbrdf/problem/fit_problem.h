@@ -48,11 +48,21 @@ enum class Precision { kSingle, kDouble };
 inline constexpr NameTable<Precision, 2> kPrecisions = {
     {{"single", Precision::kSingle}, {"double", Precision::kDouble}}};
 
+// Uniform random weights.
+enum class Initialization {
+  kGlorot,  // Glorot and Bengio 2010; the last layer's biases are the mean of log(1 + f)
+  kNbrdf,   // NBRDF's: within +-0.05, biases 0; what Adam gets furthest from
+};
+
+inline constexpr NameTable<Initialization, 2> kInitializations = {
+    {{"glorot", Initialization::kGlorot}, {"nbrdf", Initialization::kNbrdf}}};
+
 struct FitProblem {
   // The network.
   Encoding encoding = Encoding::kMultiscale;
   std::vector<int> hidden = {21, 21};
   Activation activation = Activation::kTanh;
+  Initialization initialization = Initialization::kGlorot;
 
   // The terms' weights, >= 0; 0: the term is absent. At least one > 0.
   double log_weight = 1.0;
@@ -87,9 +97,9 @@ struct FitProblem {
 // rho, or null for l2, which Ceres takes for rho(s) = s, and for absolute, which has none.
 std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale);
 
-// Uniform (Glorot and Bengio 2010); the last layer's biases are the mean of log(1 + f) over the
-// samples. shape.num_weights() numbers.
+// Where a fit to `samples` starts: shape.num_weights() numbers.
 std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
-                                   std::uint64_t seed);
+                                   std::uint64_t seed,
+                                   Initialization initialization = Initialization::kGlorot);
 
 }  // namespace pbnbrdf

@@ -68,7 +68,8 @@ class MinibatchStream {
 
  private:
   double Uniform();
-  void DrawSample(std::size_t place, float* block, std::size_t lane);
+  std::span<const std::uint32_t> DrawIndices(std::size_t first);
+  void CopyBlock(std::span<const std::uint32_t> indices, float* block) const;
   void DrawAlbedo(double cos_i, Minibatches* to);
 
   FitProblem problem_;
