@@ -123,8 +123,9 @@ HWY_INLINE void AbsoluteLossGradientOf(const T* z, const T* cos_i, const T* f, T
       norm_fit = hn::MulAdd(fit[c], fit[c], norm_fit);
     }
     // |log1p(a) - log1p(b)| falls and rises with a as |a - b| does: no logarithm is needed.
-    const auto side = hn::Mul(hn::Set(d, 2 * chromaticity_weight), Sign(d, hn::Sub(norm_fit, norm)));
-    const auto chroma = hn::Div(hn::Mul(side, cos2), hn::MulAdd(cos2, norm_fit, one));
+    const auto side = Sign(d, hn::Sub(norm_fit, norm));
+    const auto chroma = hn::Div(hn::Mul(hn::Set(d, 2 * chromaticity_weight), hn::Mul(side, cos2)),
+                                hn::MulAdd(cos2, norm_fit, one));
     for (int c = 0; c < 3; ++c) {
       const auto from = hn::LoadU(d, f + c * kBatch + n);
       const auto up = hn::Mul(hn::Set(d, log_weight), Sign(d, hn::Sub(fit[c], from)));
@@ -150,18 +151,23 @@ HWY_INLINE void AddReflectanceSumsOf(const T* z, const T* weights, T* sums) {
 }
 
 template <typename T>
-HWY_INLINE void AdamStepOf(std::size_t count, const T* gradient, T rate, T beta1, T beta2, T epsilon,
-                           T* mean, T* square, T* x) {
+HWY_INLINE void AdamStepOf(std::size_t count, const T* gradient, T rate, T beta1, T beta2,
+                           T epsilon, T* mean, T* square, T* x) {
   const hn::ScalableTag<T> d;
   const auto b1 = hn::Set(d, beta1), b2 = hn::Set(d, beta2);
+  // Those of a dead unit would decay to subnormal numbers, which are slow, and stay there.
+  const auto without_tiny = [&](auto value) {
+    return hn::IfThenElseZero(hn::Gt(hn::Abs(value), hn::Set(d, T(1e-35))), value);
+  };
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto g = hn::LoadU(d, gradient + i);
     const auto m = hn::MulAdd(b1, hn::Sub(hn::LoadU(d, mean + i), g), g);
     const auto g2 = hn::Mul(g, g);
     const auto v = hn::MulAdd(b2, hn::Sub(hn::LoadU(d, square + i), g2), g2);
-    const auto step = hn::Div(hn::Mul(hn::Set(d, rate), m), hn::Add(hn::Sqrt(v), hn::Set(d, epsilon)));
-    hn::StoreU(m, d, mean + i);
-    hn::StoreU(v, d, square + i);
+    const auto root = hn::Add(hn::Sqrt(v), hn::Set(d, epsilon));
+    const auto step = hn::Div(hn::Mul(hn::Set(d, rate), m), root);
+    hn::StoreU(without_tiny(m), d, mean + i);
+    hn::StoreU(without_tiny(v), d, square + i);
     hn::StoreU(hn::Sub(hn::LoadU(d, x + i), step), d, x + i);
   }
 }
@@ -257,7 +263,9 @@ HWY_INLINE void AddLaneSums(T alpha, const V* sum, T* to) {
     hn::Store(fours, d, lanes);
     const hn::Full128<T> d4;
     auto total = hn::Load(d4, lanes);
-    for (std::size_t i = 4; i < hn::Lanes(d); i += 4) total = hn::Add(total, hn::Load(d4, lanes + i));
+    for (std::size_t i = 4; i < hn::Lanes(d); i += 4) {
+      total = hn::Add(total, hn::Load(d4, lanes + i));
+    }
     hn::StoreU(hn::MulAdd(hn::Set(d4, alpha), total, hn::LoadU(d4, to)), d4, to);
     return;
   }

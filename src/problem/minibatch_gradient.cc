@@ -36,10 +36,9 @@ void MinibatchGradient::AddBlock(const float* weights, const float* block, float
                                  float* gradient) {
   mlp_.Forward(weights, block);
   // A place without a sample has cos_i = 0, thus no gradient.
-  kernels::AbsoluteLossGradient(mlp_.output(), block + Minibatches::kCos * kBatch,
-                                block + Minibatches::kValue * kBatch,
-                                scale * log_weight_ / kChannels, scale * chromaticity_weight_,
-                                mlp_.output_gradient(0));
+  kernels::AbsoluteLossGradient(
+      mlp_.output(), block + Minibatches::kCos * kBatch, block + Minibatches::kValue * kBatch,
+      scale * log_weight_ / kChannels, scale * chromaticity_weight_, mlp_.output_gradient(0));
   mlp_.Backward(weights);
   mlp_.AddWeightGradient(0, gradient);
 }

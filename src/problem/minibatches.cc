@@ -60,9 +60,7 @@ void MinibatchStream::Draw(Minibatches* to) {
 }
 
 // In (0, 1); std::uniform_real_distribution differs between libraries.
-double MinibatchStream::Uniform() {
-  return (static_cast<double>(random_() >> 32) + 0.5) * 0x1p-32;
-}
+double MinibatchStream::Uniform() { return (static_cast<double>(random_() >> 32) + 0.5) * 0x1p-32; }
 
 // Steps of the shuffle of Fisher and Yates: a minibatch of the samples that the epoch hasn't had
 // yet. Below 2^32 of them; std::shuffle differs between libraries.
@@ -102,7 +100,8 @@ void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
       if (lane == 0) to->nodes.resize(to->nodes.size() + Minibatches::kNodeRows * kBatch, 0.0f);
       float* block = to->nodes.data() + to->nodes.size() - Minibatches::kNodeRows * kBatch;
       const auto input = Encode(problem_.encoding, {wi, wo});
-      for (int k = 0; k < kEncodedSize; ++k) block[k * kBatch + lane] = static_cast<float>(input[k]);
+      for (int k = 0; k < kEncodedSize; ++k)
+        block[k * kBatch + lane] = static_cast<float>(input[k]);
       const double solid_angle_h = sin_h * kPi * t / n_theta * (2.0 * kPi / n_phi);
       block[Minibatches::kWeight * kBatch + lane] =
           static_cast<float>(wo.z * 4.0 * cos_d * solid_angle_h);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kBeta1 = 0.9, kBeta2 = 0.999;
 constexpr double kEpsilon = 1e-15;  // NBRDF's
-constexpr std::size_t kCostSamples = 4096;
+constexpr std::size_t kCostSamples = 16384;
 constexpr std::size_t kWindow = 5;  // epochs whose mean cost is compared
 
 // Steps on one thread, while another one draws the minibatches that come next.
@@ -108,8 +109,9 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
                          std::vector<double>* weights) {
   Adam state(problem, samples, adam, *weights);
   const auto objective = MakeCost(problem, samples);
-  std::vector<double> costs;  // at the start and after each epoch
+  std::vector<double> last = *weights, costs;  // after each epoch, and at the start
   StageResult result;
+  result.cost = std::numeric_limits<double>::infinity();
   const auto out_of_time = [&] { return options.seconds_left && options.seconds_left() <= 0.0; };
   const auto stop = [&](Termination termination, const std::string& message) {
     result.termination = termination;
@@ -117,18 +119,22 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
     return result;
   };
   while (true) {
-    result.cost = costs.emplace_back(objective->Cost(weights->data()));
-    if (!std::isfinite(result.cost)) {
+    costs.push_back(objective->Cost(last.data()));
+    if (!std::isfinite(costs.back())) {
       Fail("Adam diverged in epoch ", result.iterations, "; try a smaller learning rate");
+    }
+    if (costs.back() < result.cost) {
+      result.cost = costs.back();
+      *weights = last;
     }
     if (options.on_iteration && !options.on_iteration(result.iterations, result.cost)) {
       return stop(Termination::kInterrupted, "the user stopped it");
     }
     if (HasConverged(costs, options.function_tolerance)) {
       return stop(Termination::kConverged,
-                  StrCat("mean cost of the last ", kWindow, " epochs and of those before: ",
-                         MeanCost(costs, costs.size(), kWindow), ", ",
-                         MeanCost(costs, costs.size() - kWindow, kWindow)));
+                  StrCat("mean cost of the last ", kWindow,
+                         " epochs and of those before: ", MeanCost(costs, costs.size(), kWindow),
+                         ", ", MeanCost(costs, costs.size() - kWindow, kWindow)));
     }
     if (result.iterations >= options.max_iterations) {
       return stop(Termination::kMaxIterations, StrCat(result.iterations, " epochs"));
@@ -136,7 +142,7 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
     if (out_of_time()) return stop(Termination::kMaxSeconds, "the time is used up");
     ++result.iterations;
     state.RunEpoch(out_of_time);
-    state.CopyWeights(weights);
+    state.CopyWeights(&last);
   }
 }
 

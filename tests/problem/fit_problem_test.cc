@@ -62,8 +62,7 @@ TEST(InitialWeights, OutputsStartAtTheMeanOfTheTargets) {
 
 TEST(InitialWeights, NbrdfsAreSmallWithBiasesOf0) {
   const NetworkShape shape(Encoding::kCartesian, {21, 21}, Activation::kRelu);
-  const std::vector<double> weights =
-      InitialWeights(shape, {}, /*seed=*/1, Initialization::kNbrdf);
+  const std::vector<double> weights = InitialWeights(shape, {}, /*seed=*/1, Initialization::kNbrdf);
   const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
   EXPECT_NEAR(*least, -0.05, 1e-3);
   EXPECT_NEAR(*most, 0.05, 1e-3);

@@ -314,7 +314,9 @@ TEST_P(EverySolver, StopsWhenAsked) {
 INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
                          testing::Values(Solver::kTinyLm, Solver::kLm, Solver::kLbfgs,
                                          Solver::kAdam),
-                         [](const auto& test) { return std::string(NameOf(kSolvers, test.param)); });
+                         [](const auto& test) {
+                           return std::string(NameOf(kSolvers, test.param));
+                         });
 
 TEST(FitBrdf, AdamsToleranceIsOfTheMeanOverFiveEpochs) {
   FitOptions options;

@@ -25,10 +25,11 @@ struct AdamOptions {
 // Loss::kAbsolute whatever problem.loss says, of all terms from the start; the energy term takes
 // random incident angles at each step, on a grid of energy_theta x energy_phi half vectors.
 //
-// The cost reported is that of Objective over some of the training samples. It is noisy; converged
-// means that its mean over 5 epochs differs from that over the 5 before by less than a part of
-// function_tolerance. weights: where to start, and on return and in callbacks the last ones, as is
-// usual with Adam. Throws Error if the cost isn't finite any more.
+// The cost is that of Objective over some of the training samples. From epoch to epoch it is noisy;
+// converged means that its mean over 5 epochs differs from that over the 5 before by less than a
+// part of function_tolerance. weights: where to start, and on return and in callbacks those of the
+// epoch with the least cost; the published scripts keep the last, which is a tenth worse or more at
+// random. Throws Error if the cost isn't finite any more.
 StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> samples,
                          const AdamOptions& adam, const StageOptions& options,
                          std::vector<double>* weights);
