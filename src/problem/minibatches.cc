@@ -36,7 +36,7 @@ void MinibatchStream::Draw(Minibatches* to) {
   const std::size_t per_epoch = order_.size() / batch_;
   to->batch = batch_;
   to->count = std::clamp<std::size_t>(kMostSamples / batch_, 1, per_epoch - next_);
-  to->samples.assign(to->count * to->BlocksPerStep() * Minibatches::kRows * kBatch, 0.0f);
+  to->samples.resize(to->count * to->BlocksPerStep() * Minibatches::kRows * kBatch);
   float* block = to->samples.data();
   for (std::size_t b = 0; b < to->count; ++b, ++next_) {
     const std::span<const std::uint32_t> drawn = DrawIndices(next_ * batch_);
@@ -68,6 +68,10 @@ std::span<const std::uint32_t> MinibatchStream::DrawIndices(std::size_t first) {
   for (std::size_t place = first; place < first + batch_; ++place) {
     const std::size_t left = order_.size() - place;
     std::swap(order_[place], order_[place + ((random_() >> 32) * left >> 32)]);
+    // It is too far away to be waited for.
+    const float* row = rows_.data() + std::size_t{order_[place]} * Minibatches::kRows;
+    __builtin_prefetch(row);
+    __builtin_prefetch(row + Minibatches::kRows - 1);
   }
   return std::span(order_).subspan(first, batch_);
 }
@@ -76,6 +80,9 @@ void MinibatchStream::CopyBlock(std::span<const std::uint32_t> indices, float* b
   for (std::size_t n = 0; n < indices.size(); ++n) {
     const float* row = rows_.data() + std::size_t{indices[n]} * Minibatches::kRows;
     for (int i = 0; i < Minibatches::kRows; ++i) block[i * kBatch + n] = row[i];
+  }
+  for (int i = 0; i < Minibatches::kRows && indices.size() < kBatch; ++i) {
+    std::fill(block + i * kBatch + indices.size(), block + (i + 1) * kBatch, 0.0f);
   }
 }
 
