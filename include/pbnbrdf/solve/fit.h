@@ -41,10 +41,10 @@ struct FitOptions {
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
   int max_iterations = 150;     // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;  // > 0
-  double function_tolerance =
-      1e-6;          // stop when |cost change| < function_tolerance * cost; Adam: adam.h
-  AdamOptions adam;  // of Solver::kAdam
-  int threads = 0;   // 0: as many as the machine has
+  double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
+                                     // with Adam is that of a mean (adam.h)
+  AdamOptions adam;                  // of Solver::kAdam
+  int threads = 0;                   // 0: as many as the machine has
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
 };
