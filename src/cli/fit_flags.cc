@@ -8,6 +8,8 @@ DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
 DEFINE_string(encoding, "multiscale", "the network's input: cartesian | reciprocal | multiscale");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
+DEFINE_string(initialization, "glorot",
+              "initial weights: glorot, by layer | nbrdf, small, better with adam");
 DEFINE_string(terms, "log,energy",
               "terms of the cost: log (eq. 6), chromaticity (eq. 7), energy (eq. 5)");
 DEFINE_double(log_weight, 1.0, "weight of the log term");
@@ -18,7 +20,8 @@ DEFINE_int32(energy_theta, 64, "its quadrature's elevations of the half vector")
 DEFINE_int32(energy_phi, 32, "its quadrature's azimuths of the half vector");
 DEFINE_string(loss, "soft_l1",
               "robust loss of the log and chromaticity terms: "
-              "l2 | soft_l1 | huber | cauchy");
+              "l2 | soft_l1 | huber | cauchy | absolute, the papers' own sum of all "
+              "terms, for lbfgs and, always, adam");
 DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square to linear");
 DEFINE_string(sampling, "highlight",
               "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
@@ -34,6 +37,7 @@ DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations (adam: 
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_uint64(batch, 512, "adam: samples a step");
 DEFINE_double(learning_rate, 5e-4, "adam: step size");
+DEFINE_int32(energy_angles, 2, "adam: random incident angles a step of the energy term");
 DEFINE_double(function_tolerance, 1e-6, "stop when an iteration lowers the cost by a smaller part");
 
 namespace pbnbrdf::cli {
@@ -65,6 +69,7 @@ FitProblem ParseProblem() {
   problem.encoding = ParseName(kEncodings, "encoding", FLAGS_encoding);
   problem.hidden = ParseHidden(FLAGS_hidden);
   problem.activation = ParseName(kActivations, "activation", FLAGS_activation);
+  problem.initialization = ParseName(kInitializations, "initialization", FLAGS_initialization);
   problem.log_weight = terms.log ? FLAGS_log_weight : 0.0;
   problem.chromaticity_weight = terms.chromaticity ? FLAGS_chromaticity_weight : 0.0;
   problem.energy_weight = terms.energy ? FLAGS_energy_weight : 0.0;
@@ -91,6 +96,7 @@ FitOptions ParseOptions() {
   options.function_tolerance = FLAGS_function_tolerance;
   options.adam.batch = FLAGS_batch;
   options.adam.learning_rate = FLAGS_learning_rate;
+  options.adam.energy_angles = FLAGS_energy_angles;
   options.threads = FLAGS_threads;
   return options;
 }
@@ -98,14 +104,14 @@ FitOptions ParseOptions() {
 }  // namespace
 
 std::vector<FlagGroup> ProblemFlags() {
-  return {{"The network", {"encoding", "hidden", "activation", "precision"}},
+  return {{"The network", {"encoding", "hidden", "activation", "initialization", "precision"}},
           {"The terms",
            {"terms", "log_weight", "chromaticity_weight", "energy_weight", "energy_strata",
             "energy_theta", "energy_phi", "loss", "loss_scale"}},
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
            {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance", "batch",
-            "learning_rate"}}};
+            "learning_rate", "energy_angles"}}};
 }
 
 FitFlags ParseFitFlags() {

@@ -113,6 +113,97 @@ HWY_INLINE void ExpAll(T* x, std::size_t count) {
 }
 
 template <typename T>
+HWY_INLINE void ReluAll(T* x, std::size_t count) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    hn::StoreU(hn::Max(hn::Zero(d), hn::LoadU(d, x + i)), d, x + i);  // keeps a NaN
+  }
+}
+
+template <typename T>
+HWY_INLINE void ReluSlopesAll(const T* y, std::size_t count, T* delta) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto on = hn::Gt(hn::LoadU(d, y + i), hn::Zero(d));
+    hn::StoreU(hn::IfThenElseZero(on, hn::LoadU(d, delta + i)), d, delta + i);
+  }
+}
+
+// 1, 0 or -1.
+template <class D, class V>
+HWY_INLINE V Sign(D d, V x) {
+  const V one = hn::Set(d, 1);
+  const V magnitude = hn::IfThenZeroElse(hn::Eq(x, hn::Zero(d)), one);
+  return hn::CopySign(magnitude, x);
+}
+
+template <typename T>
+HWY_INLINE void AbsoluteLossGradientOf(const T* z, const T* cos_i, const T* f, T log_weight,
+                                       T chromaticity_weight, T* gradient) {
+  const hn::ScalableTag<T> d;
+  const auto one = hn::Set(d, 1), least = hn::Set(d, T(1e-30));
+  for (int n = 0; n < kBatch; n += static_cast<int>(hn::Lanes(d))) {
+    const auto cos = hn::LoadU(d, cos_i + n), cos2 = hn::Mul(cos, cos);
+    hn::Vec<decltype(d)> grown[3], fit[3];
+    auto norm = hn::Zero(d), norm_fit = hn::Zero(d);
+    for (int c = 0; c < 3; ++c) {
+      grown[c] = hn::Exp(d, hn::LoadU(d, z + c * kBatch + n));
+      fit[c] = hn::Sub(grown[c], one);
+      const auto from = hn::LoadU(d, f + c * kBatch + n);
+      norm = hn::MulAdd(from, from, norm);
+      norm_fit = hn::MulAdd(fit[c], fit[c], norm_fit);
+    }
+    // |log1p(a) - log1p(b)| falls and rises with a as |a - b| does: no logarithm is needed.
+    const auto side = Sign(d, hn::Sub(norm_fit, norm));
+    const auto chroma = hn::Div(hn::Mul(hn::Set(d, 2 * chromaticity_weight), hn::Mul(side, cos2)),
+                                hn::MulAdd(cos2, norm_fit, one));
+    for (int c = 0; c < 3; ++c) {
+      const auto from = hn::LoadU(d, f + c * kBatch + n);
+      const auto up = hn::Mul(hn::Set(d, log_weight), Sign(d, hn::Sub(fit[c], from)));
+      // 1 + f^ cos_i = (1 - cos_i) + cos_i exp(z), without the cancellation.
+      const auto lit = hn::Max(hn::MulAdd(cos, grown[c], hn::Sub(one, cos)), least);
+      const auto log = hn::Div(hn::Mul(up, cos), lit);
+      hn::StoreU(hn::Mul(grown[c], hn::MulAdd(chroma, fit[c], log)), d, gradient + c * kBatch + n);
+    }
+  }
+}
+
+template <typename T>
+HWY_INLINE void AddReflectanceSumsOf(const T* z, const T* weights, T* sums) {
+  const hn::ScalableTag<T> d;
+  for (int c = 0; c < 3; ++c) {
+    auto sum = hn::Zero(d);
+    for (int n = 0; n < kBatch; n += static_cast<int>(hn::Lanes(d))) {
+      const auto grown = hn::Exp(d, hn::Max(hn::Zero(d), hn::LoadU(d, z + c * kBatch + n)));
+      sum = hn::MulAdd(hn::LoadU(d, weights + n), hn::Sub(grown, hn::Set(d, 1)), sum);
+    }
+    sums[c] += hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+}
+
+template <typename T>
+HWY_INLINE void AdamStepOf(std::size_t count, const T* gradient, T rate, T beta1, T beta2,
+                           T epsilon, T* mean, T* square, T* x) {
+  const hn::ScalableTag<T> d;
+  const auto b1 = hn::Set(d, beta1), b2 = hn::Set(d, beta2);
+  // Those of a dead unit would decay to subnormal numbers, which are slow, and stay there.
+  const auto without_tiny = [&](auto value) {
+    return hn::IfThenElseZero(hn::Gt(hn::Abs(value), hn::Set(d, T(1e-35))), value);
+  };
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto g = hn::LoadU(d, gradient + i);
+    const auto m = hn::MulAdd(b1, hn::Sub(hn::LoadU(d, mean + i), g), g);
+    const auto g2 = hn::Mul(g, g);
+    const auto v = hn::MulAdd(b2, hn::Sub(hn::LoadU(d, square + i), g2), g2);
+    const auto root = hn::Add(hn::Sqrt(v), hn::Set(d, epsilon));
+    const auto step = hn::Div(hn::Mul(hn::Set(d, rate), m), root);
+    hn::StoreU(without_tiny(m), d, mean + i);
+    hn::StoreU(without_tiny(v), d, square + i);
+    hn::StoreU(hn::Sub(hn::LoadU(d, x + i), step), d, x + i);
+  }
+}
+
+template <typename T>
 HWY_INLINE void PairProductsOf(const T* a, int na, const T* b, int nb, bool symmetric, T* out,
                                int out_stride) {
   const hn::ScalableTag<T> d;
@@ -245,6 +336,34 @@ HWY_INLINE void AddProductOf(const T* x, int p, const T* y, int q, int y_stride,
   }
 }
 
+// to[k] += alpha times the sum of the lanes of sum[k], k < kCount: four floats at a time, as their
+// separate sums would take longer than the dot products do.
+template <int kCount, typename T, class V>
+HWY_INLINE void AddLaneSums(T alpha, const V* sum, T* to) {
+  const hn::ScalableTag<T> d;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (kCount == 4 && sizeof(T) == 4) {
+    const hn::RepartitionToWide<decltype(d)> wide;
+    const auto pairs = [&](V a, V b) {
+      return hn::BitCast(wide, hn::Add(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)));
+    };
+    const auto low = pairs(sum[0], sum[1]), high = pairs(sum[2], sum[3]);
+    const V fours = hn::Add(hn::BitCast(d, hn::InterleaveLower(wide, low, high)),
+                            hn::BitCast(d, hn::InterleaveUpper(wide, low, high)));
+    HWY_ALIGN T lanes[HWY_MAX_BYTES / sizeof(T)];
+    hn::Store(fours, d, lanes);
+    const hn::Full128<T> d4;
+    auto total = hn::Load(d4, lanes);
+    for (std::size_t i = 4; i < hn::Lanes(d); i += 4) {
+      total = hn::Add(total, hn::Load(d4, lanes + i));
+    }
+    hn::StoreU(hn::MulAdd(hn::Set(d4, alpha), total, hn::LoadU(d4, to)), d4, to);
+    return;
+  }
+#endif
+  for (int k = 0; k < kCount; ++k) to[k] += alpha * hn::GetLane(hn::SumOfLanes(d, sum[k]));
+}
+
 // kX x kY entries of c, each a dot product along rows.
 template <int kX, int kY, typename T>
 HWY_INLINE void RowProductBlock(T alpha, const T* x, int x_stride, const T* y, int y_stride,
@@ -265,8 +384,9 @@ HWY_INLINE void RowProductBlock(T alpha, const T* x, int x_stride, const T* y, i
     }
   }
   for (int i = 0; i < kX; ++i) {
-    for (int j = 0; j < kY; ++j) {
-      T total = hn::GetLane(hn::SumOfLanes(d, sum[i][j]));
+    AddLaneSums<kY>(alpha, sum[i], c + i * c_stride);
+    for (int j = 0; j < kY && k < size; ++j) {
+      T total = 0;
       for (int rest = k; rest < size; ++rest) total += x[i * x_stride + rest] * y[j * y_stride + rest];
       c[i * c_stride + j] += alpha * total;
     }
@@ -339,6 +459,21 @@ HWY_INLINE void AllLogResiduals(const T* z, const double* targets, const double*
   }                                                                                             \
   void Tanh##Suffix(T* x, std::size_t count) { TanhAll(x, count); }                             \
   void Exp##Suffix(T* x, std::size_t count) { ExpAll(x, count); }                               \
+  void Relu##Suffix(T* x, std::size_t count) { ReluAll(x, count); }                             \
+  void ReluSlopes##Suffix(const T* y, std::size_t count, T* delta) {                            \
+    ReluSlopesAll(y, count, delta);                                                             \
+  }                                                                                             \
+  void AbsoluteLossGradient##Suffix(const T* z, const T* cos_i, const T* f, T log_weight,       \
+                                    T chromaticity_weight, T* gradient) {                       \
+    AbsoluteLossGradientOf(z, cos_i, f, log_weight, chromaticity_weight, gradient);             \
+  }                                                                                             \
+  void AddReflectanceSums##Suffix(const T* z, const T* weights, T* sums) {                      \
+    AddReflectanceSumsOf(z, weights, sums);                                                     \
+  }                                                                                             \
+  void AdamStep##Suffix(std::size_t count, const T* gradient, T rate, T beta1, T beta2,         \
+                        T epsilon, T* mean, T* square, T* x) {                                  \
+    AdamStepOf(count, gradient, rate, beta1, beta2, epsilon, mean, square, x);                  \
+  }                                                                                             \
   void AddRowProducts##Suffix(T alpha, const T* x, int rows_x, int x_stride, const T* y,        \
                               int rows_y, int y_stride, int size, T* c, int c_stride) {         \
     AddAllRowProducts(alpha, x, rows_x, x_stride, y, rows_y, y_stride, size, c, c_stride);      \
@@ -381,6 +516,11 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   HWY_EXPORT(DenseTransposed##Suffix);                                                          \
   HWY_EXPORT(Tanh##Suffix);                                                                     \
   HWY_EXPORT(Exp##Suffix);                                                                      \
+  HWY_EXPORT(Relu##Suffix);                                                                     \
+  HWY_EXPORT(ReluSlopes##Suffix);                                                               \
+  HWY_EXPORT(AbsoluteLossGradient##Suffix);                                                     \
+  HWY_EXPORT(AddReflectanceSums##Suffix);                                                       \
+  HWY_EXPORT(AdamStep##Suffix);                                                                 \
   HWY_EXPORT(AddRowProducts##Suffix);                                                           \
   HWY_EXPORT(PairProducts##Suffix);                                                             \
   HWY_EXPORT(SummedPairProducts##Suffix);                                                       \
@@ -405,6 +545,30 @@ const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
   template <>                                                                                   \
   void Exp(T* x, std::size_t count) {                                                           \
     HWY_DYNAMIC_DISPATCH(Exp##Suffix)(x, count);                                                \
+  }                                                                                             \
+  template <>                                                                                   \
+  void Relu(T* x, std::size_t count) {                                                          \
+    HWY_DYNAMIC_DISPATCH(Relu##Suffix)(x, count);                                               \
+  }                                                                                             \
+  template <>                                                                                   \
+  void ReluSlopes(const T* y, std::size_t count, T* delta) {                                    \
+    HWY_DYNAMIC_DISPATCH(ReluSlopes##Suffix)(y, count, delta);                                  \
+  }                                                                                             \
+  template <>                                                                                   \
+  void AbsoluteLossGradient(const T* z, const T* cos_i, const T* f, T log_weight,               \
+                            T chromaticity_weight, T* gradient) {                               \
+    HWY_DYNAMIC_DISPATCH(AbsoluteLossGradient##Suffix)                                          \
+    (z, cos_i, f, log_weight, chromaticity_weight, gradient);                                   \
+  }                                                                                             \
+  template <>                                                                                   \
+  void AddReflectanceSums(const T* z, const T* weights, T* sums) {                              \
+    HWY_DYNAMIC_DISPATCH(AddReflectanceSums##Suffix)(z, weights, sums);                         \
+  }                                                                                             \
+  template <>                                                                                   \
+  void AdamStep(std::size_t count, const T* gradient, T rate, T beta1, T beta2, T epsilon,      \
+                T* mean, T* square, T* x) {                                                     \
+    HWY_DYNAMIC_DISPATCH(AdamStep##Suffix)                                                      \
+    (count, gradient, rate, beta1, beta2, epsilon, mean, square, x);                            \
   }                                                                                             \
   template <>                                                                                   \
   void AddRowProducts(T alpha, const T* x, int rows_x, int x_stride, const T* y, int rows_y,    \

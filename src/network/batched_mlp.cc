@@ -1,25 +1,15 @@
 #include "pbnbrdf/network/batched_mlp.h"
 
-#include <algorithm>
-
 namespace pbnbrdf {
 namespace {
 
 using kernels::kBatch;
 
-template <typename T>
-void Rectify(AlignedVector<T>* x) {
-  for (T& value : *x) value = std::max(value, T(0));
-}
-
 // delta *= the activation's slope, from its value y.
 template <typename T>
 void MultiplySlopes(Activation activation, const T* y, std::size_t count, T* delta) {
-  if (activation == Activation::kTanh) {
-    for (std::size_t i = 0; i < count; ++i) delta[i] *= T(1) - y[i] * y[i];
-  } else {
-    for (std::size_t i = 0; i < count; ++i) delta[i] = y[i] > T(0) ? delta[i] : T(0);
-  }
+  if (activation == Activation::kRelu) return kernels::ReluSlopes(y, count, delta);
+  for (std::size_t i = 0; i < count; ++i) delta[i] *= T(1) - y[i] * y[i];
 }
 
 // to[n * stride + i] = from[i * kBatch + n], in tiles that stay in the cache.
@@ -60,7 +50,7 @@ void BatchedMlp<T>::Forward(const T* weights, const T* input) {
       kernels::DenseTanh(layer_weights, shape_.out(layer), shape_.in(layer), input, output);
     } else {
       kernels::Dense(layer_weights, shape_.out(layer), shape_.in(layer), input, output);
-      if (hidden) Rectify(&activations_[layer]);
+      if (hidden) kernels::Relu(output, activations_[layer].size());
     }
     input = output;
   }

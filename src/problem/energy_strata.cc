@@ -23,7 +23,8 @@ template <typename T>
 EnergyStrata<T>::EnergyStrata(const FitProblem& problem) : shape_(problem.Shape()) {
   if (problem.energy_weight == 0.0) return;
   const double solid_angle = 2.0 * std::numbers::pi / problem.energy_strata;
-  residual_scale_ = std::sqrt(problem.energy_weight * solid_angle);
+  absolute_ = problem.loss == Loss::kAbsolute;
+  weight_ = problem.energy_weight * solid_angle / (absolute_ ? kChannels : 1);
   strata_.resize(problem.energy_strata);
   for (int k = 0; k < problem.energy_strata; ++k) {
     const auto nodes = AlbedoQuadrature(StratumAngle(k, problem.energy_strata),
@@ -47,10 +48,7 @@ template <typename T>
 double EnergyStrata<T>::Cost(const T* weights) const {
   double cost = 0.0;
   for (const Rgb& albedo : Albedos(weights)) {
-    for (double a : albedo) {
-      const double r = residual_scale_ * std::max(0.0, a - 1.0);
-      cost += 0.5 * r * r;
-    }
+    for (double a : albedo) cost += CostOf(std::max(0.0, a - 1.0));
   }
   return cost;
 }
@@ -67,20 +65,30 @@ void EnergyStrata<T>::Linearize(const T* weights, Linearization* at) const {
   // The rows of J: a stratum and a channel each.
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int p = shape_.num_weights();
-  RowMajor jacobian = RowMajor::Zero(kChannels * active.size(), p);
-  Eigen::VectorXd residuals(jacobian.rows());
+  RowMajor jacobian = RowMajor::Zero(kChannels * active.size(), p);  // of the albedos
+  Eigen::VectorXd slopes(jacobian.rows());
   tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t k) {
     AlbedoGradients(weights, strata_[active[k]], jacobian.row(kChannels * k).data());
   });
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
     const double excess = albedos[active[row / kChannels]][row % kChannels] - 1.0;
-    residuals[row] = residual_scale_ * std::max(0.0, excess);
-    jacobian.row(row) *= excess > 0.0 ? residual_scale_ : 0.0;
+    at->cost += CostOf(std::max(0.0, excess));
+    slopes[row] = SlopeOf(std::max(0.0, excess));
+    if (!(excess > 0.0)) jacobian.row(row).setZero();
   }
-  at->cost += 0.5 * residuals.squaredNorm();
-  Eigen::Map<Eigen::VectorXd>(at->gradient.data(), p) += jacobian.transpose() * residuals;
+  Eigen::Map<Eigen::VectorXd>(at->gradient.data(), p) += jacobian.transpose() * slopes;
   if (at->hessian.empty()) return;
-  Eigen::Map<RowMajor>(at->hessian.data(), p, p) += jacobian.transpose() * jacobian;
+  Eigen::Map<RowMajor>(at->hessian.data(), p, p) += weight_ * (jacobian.transpose() * jacobian);
+}
+
+template <typename T>
+double EnergyStrata<T>::CostOf(double excess) const {
+  return absolute_ ? weight_ * excess : 0.5 * weight_ * excess * excess;
+}
+
+template <typename T>
+double EnergyStrata<T>::SlopeOf(double excess) const {
+  return absolute_ ? weight_ : weight_ * excess;
 }
 
 template <typename T>

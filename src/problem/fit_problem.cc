@@ -11,6 +11,7 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::size_t kMostSamples = 100'000'000;
+constexpr double kNbrdfBound = 0.05;
 
 void CheckWeight(const char* field, double weight) {
   if (!(weight >= 0.0) || !std::isfinite(weight)) {
@@ -50,6 +51,7 @@ void FitProblem::Validate() const {
 std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
   switch (loss) {
     case Loss::kL2:
+    case Loss::kAbsolute:
       return nullptr;
     case Loss::kSoftL1:
       return std::make_unique<ceres::SoftLOneLoss>(scale);
@@ -62,19 +64,20 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
 }
 
 std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
-                                   std::uint64_t seed) {
+                                   std::uint64_t seed, Initialization initialization) {
+  const bool glorot = initialization == Initialization::kGlorot;
   std::mt19937_64 random(seed);
   std::vector<double> weights(shape.num_weights(), 0.0);
   for (int layer = 0; layer < shape.num_layers(); ++layer) {
     const int in = shape.in(layer), out = shape.out(layer);
-    const double bound = std::sqrt(6.0 / (in + out));
+    const double bound = glorot ? std::sqrt(6.0 / (in + out)) : kNbrdfBound;
     double* row = weights.data() + shape.offset(layer);
     for (int o = 0; o < out; ++o, row += in + 1) {
       for (int i = 0; i < in; ++i) {
         const double u = static_cast<double>(random() >> 11) * 0x1p-53;
         row[i] = bound * (2.0 * u - 1.0);
       }
-      if (layer + 1 < shape.num_layers()) continue;
+      if (!glorot || layer + 1 < shape.num_layers()) continue;
       for (const BrdfSample& sample : samples) {
         row[in] += std::log1p(sample.value[o]) / static_cast<double>(samples.size());
       }

@@ -40,6 +40,8 @@ RobustWeight Robustify(const ceres::LossFunction* loss, double weight, double sq
   return {0.5 * weight * rho[0], std::sqrt(weight * rho[1])};
 }
 
+double Sign(double x) { return (x > 0.0) - (x < 0.0); }
+
 // A term at the training samples: residuals of Term, which takes the outputs of one sample.
 template <typename Term>
 class PointTerm {
@@ -49,6 +51,7 @@ class PointTerm {
   // weight: of the mean over the samples; 0 makes it an absent term, without rows.
   PointTerm(double weight, const FitProblem& problem, std::span<const BrdfSample> samples)
       : weight_(weight / static_cast<double>(samples.size())),
+        absolute_(problem.loss == Loss::kAbsolute),
         loss_(MakeLoss(problem.loss, problem.loss_scale)) {
     if (weight == 0.0) return;
     residuals_.reserve(samples.size());
@@ -61,8 +64,12 @@ class PointTerm {
     if (weight_ == 0.0) return 0.0;
     double r[kRows];
     residuals_[sample](z, r);
-    double squared_norm = 0.0;
-    for (double value : r) squared_norm += value * value;
+    double squared_norm = 0.0, absolute_sum = 0.0;
+    for (double value : r) {
+      squared_norm += value * value;
+      absolute_sum += std::abs(value);
+    }
+    if (absolute_) return weight_ / kRows * absolute_sum;
     return Robustify(loss_.get(), weight_, squared_norm).cost;
   }
 
@@ -74,6 +81,7 @@ class PointTerm {
     Jet outputs[kChannels], r[kRows];
     for (int c = 0; c < kChannels; ++c) outputs[c] = Jet(z[c], c);
     residuals_[sample](outputs, r);
+    if (absolute_) return SetSigns(r, set);
     double squared_norm = 0.0;
     for (const Jet& value : r) squared_norm += value.a * value.a;
     const RobustWeight robust = Robustify(loss_.get(), weight_, squared_norm);
@@ -85,7 +93,19 @@ class PointTerm {
   }
 
  private:
+  // The sum of absolute values has the gradient of a sum of products with the signs.
+  template <typename Jet, typename SetRow>
+  double SetSigns(const Jet* r, SetRow set) const {
+    double sum = 0.0;
+    for (int row = 0; row < kRows; ++row) {
+      set(row, weight_ / kRows * Sign(r[row].a), r[row].v.data());
+      sum += std::abs(r[row].a);
+    }
+    return weight_ / kRows * sum;
+  }
+
   double weight_;
+  bool absolute_;
   std::unique_ptr<ceres::LossFunction> loss_;
   std::vector<Term> residuals_;  // one a sample
 };
@@ -102,6 +122,7 @@ class LogTerm {
   // weight: of the mean over the samples; 0 makes it an absent term, without rows.
   LogTerm(double weight, const FitProblem& problem, std::span<const BrdfSample> samples)
       : weight_(weight / static_cast<double>(samples.size())),
+        absolute_(problem.loss == Loss::kAbsolute),
         loss_(MakeLoss(problem.loss, problem.loss_scale)) {
     const std::size_t padded = (samples.size() + kBatch - 1) / kBatch * kBatch;
     cos_i_.resize(padded);
@@ -124,25 +145,35 @@ class LogTerm {
                           batch->residuals.data(), batch->slopes.data());
   }
 
-  double Cost(const Batch& batch, int n) const { return Robust(batch, n).cost; }
+  double Cost(const Batch& batch, int n) const {
+    if (weight_ == 0.0) return 0.0;
+    return absolute_ ? AbsoluteSum(batch, n) : Robust(batch, n).cost;
+  }
 
   // Calls set(row, residual, gradient with respect to z) for each row of the batch's sample n.
   // Returns the cost.
   template <typename SetRow>
   double Linearize(const Batch& batch, int n, SetRow set) const {
     if (weight_ == 0.0) return 0.0;
-    const RobustWeight robust = Robust(batch, n);
+    const RobustWeight robust = absolute_ ? RobustWeight{AbsoluteSum(batch, n), 1.0}
+                                          : Robust(batch, n);
     for (int c = 0; c < kChannels; ++c) {
+      const double r = batch.residuals[c * kBatch + n];
       double gradient[kChannels] = {};
       gradient[c] = robust.row_scale * batch.slopes[c * kBatch + n];
-      set(c, robust.row_scale * batch.residuals[c * kBatch + n], gradient);
+      set(c, absolute_ ? weight_ / kChannels * Sign(r) : robust.row_scale * r, gradient);
     }
     return robust.cost;
   }
 
  private:
+  double AbsoluteSum(const Batch& batch, int n) const {
+    double sum = 0.0;
+    for (int c = 0; c < kChannels; ++c) sum += std::abs(batch.residuals[c * kBatch + n]);
+    return weight_ / kChannels * sum;
+  }
+
   RobustWeight Robust(const Batch& batch, int n) const {
-    if (weight_ == 0.0) return {0.0, 0.0};
     double squared_norm = 0.0;
     for (int c = 0; c < kChannels; ++c) {
       const double r = batch.residuals[c * kBatch + n];
@@ -152,6 +183,7 @@ class LogTerm {
   }
 
   double weight_;
+  bool absolute_;
   std::unique_ptr<ceres::LossFunction> loss_;
   AlignedVector<double> cos_i_;    // batch after batch
   AlignedVector<double> targets_;  // log1p(f cos_i), batch after batch, each by feature

@@ -1,52 +1,96 @@
 #include "pbnbrdf/solve/adam.h"
 
+#include <tbb/task_group.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
-#include <random>
+#include <utility>
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/problem/minibatch_gradient.h"
+#include "pbnbrdf/problem/minibatches.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kBeta1 = 0.9, kBeta2 = 0.999;
-constexpr float kEpsilon = 1e-15f;  // NBRDF's
-constexpr std::size_t kCostSamples = 4096;
+constexpr double kEpsilon = 1e-15;  // NBRDF's
+constexpr std::size_t kCostSamples = 16384;
+constexpr std::size_t kWindow = 5;  // epochs whose mean cost is compared
 
-// Fisher-Yates; std::shuffle differs between libraries. Below 2^32 numbers.
-void Shuffle(std::vector<std::uint32_t>* order, std::mt19937_64* random) {
-  for (std::size_t left = order->size(); left > 1; --left) {
-    const std::size_t chosen = ((*random)() >> 32) * left >> 32;
-    std::swap((*order)[left - 1], (*order)[chosen]);
-  }
-}
-
+// Steps on one thread, while another one draws the minibatches that come next.
 class Adam {
  public:
-  Adam(std::size_t size, double learning_rate)
-      : learning_rate_(learning_rate), mean_(size), square_(size) {}
+  Adam(const FitProblem& problem, std::span<const BrdfSample> samples, const AdamOptions& options,
+       const std::vector<double>& start)
+      : learning_rate_(options.learning_rate),
+        stream_(problem, samples, std::min(options.batch, samples.size()), options.energy_angles),
+        objective_(problem),
+        x_(start.begin(), start.end()) {
+    x_.resize(kernels::Padded(static_cast<int>(start.size())));
+    for (auto* values : {&gradient_, &mean_, &square_}) values->resize(x_.size());
+    stream_.Draw(&current_);
+  }
 
-  void Step(const std::vector<float>& gradient, std::vector<float>* x) {
-    ++steps_;
-    const double root = std::sqrt(1.0 - std::pow(kBeta2, steps_));
-    const float rate = static_cast<float>(learning_rate_ * root / (1.0 - std::pow(kBeta1, steps_)));
-    const float epsilon = static_cast<float>(kEpsilon * root);
-    constexpr float kB1 = static_cast<float>(kBeta1), kB2 = static_cast<float>(kBeta2);
-    for (std::size_t i = 0; i < x->size(); ++i) {
-      const float g = gradient[i];
-      mean_[i] = kB1 * mean_[i] + (1.0f - kB1) * g;
-      square_[i] = kB2 * square_[i] + (1.0f - kB2) * g * g;
-      (*x)[i] -= rate * mean_[i] / (std::sqrt(square_[i]) + epsilon);
+  // Stops within the epoch where stop() says so, asked before each step.
+  template <typename Stop>
+  void RunEpoch(Stop stop) {
+    for (bool ends = false, stopped = false; !ends && !stopped;) {
+      ends = current_.ends_epoch;
+      tbb::task_group ahead;
+      ahead.run([&] { stream_.Draw(&next_); });
+      for (std::size_t b = 0; b < current_.count && !stopped; ++b) {
+        stopped = stop();
+        if (!stopped) Step(b);
+      }
+      ahead.wait();
+      std::swap(current_, next_);
     }
   }
 
+  void CopyWeights(std::vector<double>* weights) const {
+    std::copy_n(x_.begin(), weights->size(), weights->begin());
+  }
+
  private:
+  void Step(std::size_t minibatch) {
+    objective_.Evaluate(x_.data(), current_, minibatch, gradient_.data());
+    ++steps_;
+    const double root = std::sqrt(1.0 - std::pow(kBeta2, steps_));
+    const double rate = learning_rate_ * root / (1.0 - std::pow(kBeta1, steps_));
+    kernels::AdamStep(x_.size(), gradient_.data(), static_cast<float>(rate),
+                      static_cast<float>(kBeta1), static_cast<float>(kBeta2),
+                      static_cast<float>(kEpsilon * root), mean_.data(), square_.data(), x_.data());
+  }
+
   double learning_rate_;
-  std::vector<float> mean_, square_;
+  MinibatchStream stream_;
+  MinibatchGradient objective_;
+  Minibatches current_, next_;
+  AlignedVector<float> x_, gradient_, mean_, square_;  // padded with zeros
   int steps_ = 0;
 };
+
+// The mean of the `count` costs that come before `end`.
+double MeanCost(const std::vector<double>& costs, std::size_t end, std::size_t count) {
+  return std::accumulate(costs.begin() + (end - count), costs.begin() + end, 0.0) /
+         static_cast<double>(count);
+}
+
+// Whether the last costs are those of before, but for noise and a part of `tolerance`.
+bool HasConverged(const std::vector<double>& costs, double tolerance) {
+  if (costs.size() <= 2 * kWindow) return false;  // the first is that of the start
+  const double last = MeanCost(costs, costs.size(), kWindow);
+  const double before = MeanCost(costs, costs.size() - kWindow, kWindow);
+  return std::abs(last - before) < tolerance * before;
+}
+
+std::unique_ptr<Objective> MakeCost(FitProblem problem, std::span<const BrdfSample> samples) {
+  problem.loss = Loss::kAbsolute;
+  return MakeObjective(problem, samples.first(std::min(kCostSamples, samples.size())));
+}
 
 }  // namespace
 
@@ -55,20 +99,19 @@ void AdamOptions::Validate() const {
   if (!(learning_rate > 0.0) || !std::isfinite(learning_rate)) {
     Fail("learning_rate = ", learning_rate, "; must be finite and > 0");
   }
+  if (energy_angles < 1 || energy_angles > 1024) {
+    Fail("energy_angles = ", energy_angles, "; must be 1 to 1024");
+  }
 }
 
 StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> samples,
                          const AdamOptions& adam, const StageOptions& options,
                          std::vector<double>* weights) {
-  MinibatchGradient objective(problem, samples);
-  const auto cost = MakeObjective(problem, samples.first(std::min(kCostSamples, samples.size())));
-  Adam update(weights->size(), adam.learning_rate);
-  std::mt19937_64 random(problem.seed);
-  std::vector<std::uint32_t> order(samples.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const std::size_t batch = std::min(adam.batch, samples.size());
-  std::vector<float> x(weights->begin(), weights->end()), gradient(weights->size());
+  Adam state(problem, samples, adam, *weights);
+  const auto objective = MakeCost(problem, samples);
+  std::vector<double> last = *weights, costs;  // after each epoch, and at the start
   StageResult result;
+  result.cost = std::numeric_limits<double>::infinity();
   const auto out_of_time = [&] { return options.seconds_left && options.seconds_left() <= 0.0; };
   const auto stop = [&](Termination termination, const std::string& message) {
     result.termination = termination;
@@ -76,24 +119,30 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
     return result;
   };
   while (true) {
-    result.cost = cost->MeanAbsLogError(weights->data());
-    if (!std::isfinite(result.cost)) {
+    costs.push_back(objective->Cost(last.data()));
+    if (!std::isfinite(costs.back())) {
       Fail("Adam diverged in epoch ", result.iterations, "; try a smaller learning rate");
+    }
+    if (costs.back() < result.cost) {
+      result.cost = costs.back();
+      *weights = last;
     }
     if (options.on_iteration && !options.on_iteration(result.iterations, result.cost)) {
       return stop(Termination::kInterrupted, "the user stopped it");
+    }
+    if (HasConverged(costs, options.function_tolerance)) {
+      return stop(Termination::kConverged,
+                  StrCat("mean cost of the last ", kWindow,
+                         " epochs and of those before: ", MeanCost(costs, costs.size(), kWindow),
+                         ", ", MeanCost(costs, costs.size() - kWindow, kWindow)));
     }
     if (result.iterations >= options.max_iterations) {
       return stop(Termination::kMaxIterations, StrCat(result.iterations, " epochs"));
     }
     if (out_of_time()) return stop(Termination::kMaxSeconds, "the time is used up");
     ++result.iterations;
-    Shuffle(&order, &random);
-    for (std::size_t first = 0; first + batch <= order.size() && !out_of_time(); first += batch) {
-      objective.Evaluate(x.data(), std::span(order).subspan(first, batch), gradient.data());
-      update.Step(gradient, &x);
-    }
-    weights->assign(x.begin(), x.end());
+    state.RunEpoch(out_of_time);
+    state.CopyWeights(&last);
   }
 }
 

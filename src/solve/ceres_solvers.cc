@@ -21,15 +21,19 @@ class IterationCallback final : public ceres::IterationCallback {
   explicit IterationCallback(const StageOptions& options) : options_(options) {}
 
   bool interrupted() const { return interrupted_; }
+  bool out_of_time() const { return out_of_time_; }
 
+  // The time is asked for here, as Ceres' own clock also counts what on_iteration does.
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     interrupted_ = options_.on_iteration && !options_.on_iteration(summary.iteration, summary.cost);
-    return interrupted_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    out_of_time_ = options_.seconds_left && options_.seconds_left() <= 0.0;
+    return interrupted_ || out_of_time_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                        : ceres::SOLVER_CONTINUE;
   }
 
  private:
   const StageOptions& options_;
-  bool interrupted_ = false;
+  bool interrupted_ = false, out_of_time_ = false;
 };
 
 // What the options of both solvers have in common.
@@ -38,9 +42,6 @@ CeresOptions CommonOptions(const StageOptions& options, ceres::IterationCallback
   CeresOptions ceres_options;
   ceres_options.logging_type = ceres::SILENT;
   ceres_options.max_num_iterations = options.max_iterations;
-  if (options.seconds_left) {
-    ceres_options.max_solver_time_in_seconds = std::max(options.seconds_left(), 0.0);
-  }
   ceres_options.function_tolerance = options.function_tolerance;
   ceres_options.parameter_tolerance = 0.0;
   ceres_options.gradient_tolerance = 0.0;  // costs are tiny: the relative change decides
@@ -50,20 +51,21 @@ CeresOptions CommonOptions(const StageOptions& options, ceres::IterationCallback
 }
 
 template <typename CeresSummary>
-StageResult ReadSummary(const CeresSummary& summary, const StageOptions& options,
-                        bool interrupted) {
+StageResult ReadSummary(const CeresSummary& summary, const IterationCallback& callback) {
   if (!summary.IsSolutionUsable()) Fail("the solver failed: ", summary.message);
   StageResult result;
   result.cost = summary.final_cost;
   result.iterations = std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
   result.message = summary.message;
-  if (interrupted) {
+  if (callback.interrupted()) {
     result.termination = Termination::kInterrupted;
   } else if (summary.termination_type == ceres::CONVERGENCE) {
     result.termination = Termination::kConverged;
+  } else if (callback.out_of_time()) {
+    result.termination = Termination::kMaxSeconds;
+    result.message = "the time is used up";
   } else {
-    result.termination = result.iterations >= options.max_iterations ? Termination::kMaxIterations
-                                                                     : Termination::kMaxSeconds;
+    result.termination = Termination::kMaxIterations;
   }
   return result;
 }
@@ -96,7 +98,7 @@ StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options
   ceres_options.num_threads = 1;  // one block, whose threads are its own
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, problem, &summary);
-  return ReadSummary(summary, options, callback.interrupted());
+  return ReadSummary(summary, callback);
 }
 
 StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options,
@@ -107,7 +109,13 @@ StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options
   const ceres::GradientProblem problem(new CostAndGradient(objective));
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(ceres_options, problem, weights->data(), &summary);
-  return ReadSummary(summary, options, callback.interrupted());
+  if (!summary.IsSolutionUsable() && !summary.iterations.empty()) {
+    // The line search finds no lower cost, at a kink of absolute values or where rounding hides the
+    // slope: there is nothing left to gain, and the weights are those of the last iteration.
+    summary.termination_type = ceres::CONVERGENCE;
+    summary.final_cost = summary.iterations.back().cost;
+  }
+  return ReadSummary(summary, callback);
 }
 
 }  // namespace pbnbrdf

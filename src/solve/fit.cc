@@ -58,7 +58,7 @@ class Fitter {
       : options_(options),
         samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling, problem.samples,
                              problem.seed)),
-        weights_(InitialWeights(problem.Shape(), samples_, problem.seed)) {
+        weights_(InitialWeights(problem.Shape(), samples_, problem.seed, problem.initialization)) {
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
@@ -165,6 +165,10 @@ class Fitter {
 // by orders of magnitude and leads astray, and most materials never need it.
 Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   Fitter fitter(material, problem, options);
+  if (options.solver == Solver::kAdam) {  // all terms from the start, as published
+    fitter.RunStages(problem);
+    return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish()};
+  }
   FitProblem without_energy = problem;
   without_energy.energy_weight = 0.0;
   fitter.RunStages(without_energy);
@@ -195,8 +199,9 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
          kMostSecondOrderWeights, ", as its memory grows with their square");
   }
   if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");
-  if (options.solver == Solver::kAdam && problem.energy_weight > 0.0) {
-    Fail("terms: adam takes no energy term; give it log or log,chromaticity");
+  const bool has_squares = second_order || options.jacobian == JacobianMethod::kAutodiff;
+  if (has_squares && problem.loss == Loss::kAbsolute) {
+    Fail("loss: absolute isn't a sum of squares; it takes --solver=lbfgs or adam");
   }
 }
 

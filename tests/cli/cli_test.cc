@@ -101,7 +101,9 @@ TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError(fit + " --hidden=5000", 2, "--hidden: a layer of 5000 units; must be 1 to 256");
   ExpectError(fit + " --loss_scale=0", 2, "--loss_scale = 0; must be finite and > 0");
   ExpectError(fit + " --max_seconds=-1", 2, "--max_seconds = -1; must be > 0");
-  ExpectError(fit + " --solver=adam", 2, "--terms: adam takes no energy term");
+  ExpectError(fit + " --loss=absolute", 2, "--loss: absolute isn't a sum of squares");
+  ExpectError(fit + " --solver=adam --energy_angles=0", 2,
+              "--energy_angles = 0; must be 1 to 1024");
   ExpectError(fit + " --threads=-1", 2, "--threads = -1; must be >= 0");
   ExpectError(fit + " gold.binary", 2, "'gold.binary' is not a flag");
   ExpectError("info", 2, "a file or another source is missing");
@@ -241,8 +243,8 @@ TEST_F(Cli, BadDirectionsAreNamed) {
 }
 
 TEST_F(Cli, ShippedProblemsFit) {
-  for (const char* name :
-       {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best", "nbrdf_adam"}) {
+  for (const char* name : {"nbrdf", "reciprocal", "energy", "chromaticity", "pbnbrdf", "best",
+                           "nbrdf_adam", "pbnbrdf_adam"}) {
     const std::string flags = StrCat("--flagfile=", PBNBRDF_PROBLEMS, "/", name, ".flags");
     const Result fit = Run("fit " + flags + " --material=builtin:satin-gold --samples=300" +
                            " --max_iterations=2 --out=" + Path("a.safetensors"));

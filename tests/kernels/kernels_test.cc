@@ -75,6 +75,73 @@ std::vector<T> TanhArguments() {
   return x;
 }
 
+TYPED_TEST(Kernels, ReluAndItsSlopes) {
+  using T = TypeParam;
+  std::vector<T> x = Random<T>(2 * kBatch, 5), delta = Random<T>(2 * kBatch, 6);
+  x[3] = 0;
+  x[5] = std::numeric_limits<T>::quiet_NaN();
+  x[6] = -x[5];
+  std::vector<T> y = x, gradient = delta;
+  Relu(y.data(), y.size());
+  ReluSlopes(y.data(), y.size(), gradient.data());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::isnan(x[i])) {
+      EXPECT_TRUE(std::isnan(y[i]));  // an overflow must stay visible
+    } else {
+      EXPECT_EQ(y[i], x[i] > 0 ? x[i] : 0);
+      EXPECT_EQ(gradient[i], x[i] > 0 ? delta[i] : 0);
+    }
+  }
+}
+
+TYPED_TEST(Kernels, AbsoluteLossGradientStandsUpToLargeAndSmallOutputs) {
+  // In the limits 1 + f^ cos_i ~ f^ cos_i and f^ = -1. The formula itself: minibatch_gradient_test.
+  using T = TypeParam;
+  std::vector<T> z(3 * kBatch), cos_i(kBatch, T(1)), f(3 * kBatch, T(0.5)), gradient(3 * kBatch);
+  std::fill_n(z.begin(), kBatch, T(40));
+  std::fill_n(z.begin() + kBatch, kBatch, T(-40));
+  std::fill_n(z.begin() + 2 * kBatch, kBatch, std::log1p(T(0.5)));
+  cos_i[1] = 0;  // no light
+  AbsoluteLossGradient(z.data(), cos_i.data(), f.data(), T(2), T(0), gradient.data());
+  for (int n = 0; n < kBatch; ++n) {
+    EXPECT_NEAR(gradient[n], n == 1 ? 0 : 2, 1e-6);
+    EXPECT_NEAR(gradient[kBatch + n], n == 1 ? 0 : -2, 1e-6);
+    EXPECT_LE(std::abs(gradient[2 * kBatch + n]), 2);  // a kink
+  }
+}
+
+TYPED_TEST(Kernels, ReflectanceSumsAreClamped) {
+  using T = TypeParam;
+  const auto z = Random<T>(3 * kBatch, 7), weights = Random<T>(kBatch, 8);
+  T sums[3] = {1, 2, 3};
+  AddReflectanceSums(z.data(), weights.data(), sums);
+  for (int c = 0; c < 3; ++c) {
+    double sum = c + 1;
+    for (int n = 0; n < kBatch; ++n) {
+      sum += weights[n] * std::expm1(std::max(0.0, double(z[c * kBatch + n])));
+    }
+    EXPECT_NEAR(sums[c], sum, this->kTolerance);
+  }
+}
+
+TYPED_TEST(Kernels, AdamStepIsThatOfThePaper) {
+  using T = TypeParam;
+  constexpr std::size_t kCount = 3 * kPad;
+  const auto gradient = Random<T>(kCount, 9);
+  auto mean = Random<T>(kCount, 10), square = Random<T>(kCount, 11), x = Random<T>(kCount, 12);
+  for (T& s : square) s = std::abs(s);
+  const auto mean0 = mean, square0 = square, x0 = x;
+  AdamStep(kCount, gradient.data(), T(0.1), T(0.9), T(0.99), T(1e-8), mean.data(), square.data(),
+           x.data());
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double m = 0.9 * mean0[i] + 0.1 * gradient[i];
+    const double v = 0.99 * square0[i] + 0.01 * gradient[i] * gradient[i];
+    EXPECT_NEAR(mean[i], m, this->kTolerance);
+    EXPECT_NEAR(square[i], v, this->kTolerance);
+    EXPECT_NEAR(x[i], x0[i] - 0.1 * m / (std::sqrt(v) + 1e-8), this->kTolerance);
+  }
+}
+
 TYPED_TEST(Kernels, TanhIsAsAccurateAsStated) {
   using T = TypeParam;
   const std::vector<T> x = TanhArguments<T>();

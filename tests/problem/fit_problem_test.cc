@@ -33,7 +33,7 @@ TEST(Loss, EachIsConcaveWithRhoOfZeroZero) {
   // What the condensed block needs for its square root to be real.
   for (const auto& [name, loss] : kLosses) {
     const auto rho = MakeLoss(loss, 0.1);
-    if (loss == Loss::kL2) {
+    if (loss == Loss::kL2 || loss == Loss::kAbsolute) {
       EXPECT_EQ(rho, nullptr);
       continue;
     }
@@ -58,6 +58,20 @@ TEST(InitialWeights, OutputsStartAtTheMeanOfTheTargets) {
   }
   EXPECT_EQ(weights, InitialWeights(shape, samples, /*seed=*/1));
   EXPECT_NE(weights, InitialWeights(shape, samples, /*seed=*/2));
+}
+
+TEST(InitialWeights, NbrdfsAreSmallWithBiasesOf0) {
+  const NetworkShape shape(Encoding::kCartesian, {21, 21}, Activation::kRelu);
+  const std::vector<double> weights = InitialWeights(shape, {}, /*seed=*/1, Initialization::kNbrdf);
+  const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
+  EXPECT_NEAR(*least, -0.05, 1e-3);
+  EXPECT_NEAR(*most, 0.05, 1e-3);
+  for (int layer = 0; layer < shape.num_layers(); ++layer) {
+    const int columns = shape.in(layer) + 1;
+    for (int o = 0; o < shape.out(layer); ++o) {
+      EXPECT_EQ(weights[shape.offset(layer) + (o + 1) * columns - 1], 0.0);
+    }
+  }
 }
 
 }  // namespace

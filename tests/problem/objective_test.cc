@@ -9,9 +9,15 @@
 #include <Eigen/Core>
 
 #include "network/random_network.h"
+#include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/network/mlp.h"
 #include "pbnbrdf/problem/ceres_problem.h"
+#include "pbnbrdf/problem/energy_strata.h"
+#include "pbnbrdf/residuals/chromaticity_residual.h"
+#include "pbnbrdf/residuals/energy_residual.h"
+#include "pbnbrdf/residuals/log_residual.h"
+#include "pbnbrdf/residuals/network_residual.h"
 
 namespace pbnbrdf {
 namespace {
@@ -218,6 +224,71 @@ TEST(Objective, SaysWhenItIsNotFinite) {
   Linearization at;
   EXPECT_FALSE(objective->Linearize(weights.data(), &at));
   EXPECT_FALSE(std::isfinite(objective->Cost(weights.data())));
+}
+
+// The papers' own sum from the functors of the terms.
+double AbsoluteLoss(const FitProblem& problem, const std::vector<double>& weights) {
+  const NetworkShape shape = problem.Shape();
+  const auto blocks = shape.Blocks<const double>(weights.data());
+  const auto sum_of = [&](auto term, const std::vector<DirectionPair>& pairs) {
+    std::vector<std::array<double, kEncodedSize>> inputs;
+    for (const DirectionPair& pair : pairs) inputs.push_back(Encode(shape.encoding(), pair));
+    double r[decltype(term)::kNumResiduals], sum = 0.0;
+    EXPECT_TRUE(NetworkResidual(shape, inputs, term)(blocks.data(), r));
+    for (double value : r) sum += std::abs(value);
+    return sum;
+  };
+  double loss = 0.0;
+  for (const BrdfSample& s : Samples(problem)) {
+    const double cos_i = CosI(s.pair);
+    loss += problem.log_weight / 3.0 * sum_of(LogResidual(s.value, cos_i), {s.pair});
+    loss += problem.chromaticity_weight * sum_of(ChromaticityResidual(s.value, cos_i), {s.pair});
+  }
+  loss /= static_cast<double>(problem.samples);
+  for (int k = 0; k < problem.energy_strata && problem.energy_weight > 0.0; ++k) {
+    std::vector<DirectionPair> pairs;
+    std::vector<double> node_weights;
+    for (const AlbedoNode& node : AlbedoQuadrature(StratumAngle(k, problem.energy_strata),
+                                                   problem.energy_theta, problem.energy_phi)) {
+      pairs.push_back(node.pair);
+      node_weights.push_back(node.weight);
+    }
+    const double solid_angle = 2.0 * kPi / problem.energy_strata;
+    // The residual carries the square root of its solid angle.
+    loss += problem.energy_weight * solid_angle / 3.0 *
+            sum_of(EnergyResidual(/*solid_angle=*/1.0, node_weights), pairs);
+  }
+  return loss;
+}
+
+TEST_P(ObjectiveTest, AbsoluteLossIsThePapersSumAndItsGradient) {
+  FitProblem problem = GetParam().problem;
+  problem.loss = Loss::kAbsolute;
+  problem.precision = Precision::kDouble;
+  const auto objective = MakeObjective(problem, Samples(problem));
+  std::vector<double> weights = GetParam().weights;
+  double cost;
+  std::vector<double> gradient(weights.size());
+  ASSERT_TRUE(objective->Gradient(weights.data(), &cost, gradient.data()));
+  EXPECT_NEAR(cost, AbsoluteLoss(problem, weights), 1e-10 * cost);
+  EXPECT_NEAR(cost, objective->Cost(weights.data()), 1e-12 * cost);
+  constexpr double kStep = 1e-7;
+  int kinks = 0;  // between the two points
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const auto cost_at = [&](double step) {
+      std::vector<double> moved = weights;
+      moved[i] += step;
+      return objective->Cost(moved.data());
+    };
+    const double above = cost_at(kStep) - cost, below = cost - cost_at(-kStep);
+    if (std::abs(above - below) > 1e-3 * kStep) {
+      ++kinks;
+      continue;
+    }
+    EXPECT_NEAR(gradient[i], 0.5 * (above + below) / kStep, 1e-5 * (1.0 + std::abs(gradient[i])))
+        << "weight " << i;
+  }
+  EXPECT_LT(kinks, 3);
 }
 
 TEST(Objective, MeanAbsLogErrorIsThatOfEquation6) {

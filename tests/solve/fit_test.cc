@@ -1,6 +1,8 @@
 // Whole fits, small ones.
 #include "pbnbrdf/solve/fit.h"
 
+#include <algorithm>
+
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"
 #include "pbnbrdf/brdf/albedo.h"
@@ -141,17 +143,72 @@ TEST(FitBrdf, AdamComesNearAndIsTheSameForAnyNumberOfThreads) {
   options.max_iterations = 0;
   const Fit start = FitBrdf(*gold, problem, options);
   EXPECT_LT(MeanAbsDifference(*gold, two.network), 0.3 * MeanAbsDifference(*gold, start.network));
-  problem.energy_weight = 1.0;
-  EXPECT_THAT(ErrorOf([&] { FitBrdf(*gold, problem, options); }),
-              HasSubstr("adam takes no energy term"));
 }
 
-TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
-  // Half a sphere of white: brighter than anything physical, so the term must act.
+TEST(FitBrdf, LbfgsMinimisesThePapersSumToo) {
+  FitProblem problem = SmallProblem();
+  problem.loss = Loss::kAbsolute;
+  problem.chromaticity_weight = 0.1;
+  FitOptions options;
+  options.solver = Solver::kLbfgs;
+  options.max_iterations = 500;
+  const std::vector<double> costs = CostTrace(problem, options);
+  EXPECT_LT(costs.back(), 0.1 * costs.front());
+  EXPECT_TRUE(std::is_sorted(costs.rbegin(), costs.rend()));
+}
+
+TEST(FitBrdf, SecondOrderSolversRefuseWhatIsNoSumOfSquares) {
+  FitProblem problem = SmallProblem();
+  problem.loss = Loss::kAbsolute;
+  const auto error = [&](Solver solver, JacobianMethod jacobian) {
+    FitOptions options;
+    options.solver = solver;
+    options.jacobian = jacobian;
+    return ErrorOf([&] { ValidateFit(problem, options); });
+  };
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm}) {
+    EXPECT_THAT(error(solver, JacobianMethod::kCondensed),
+                HasSubstr("absolute isn't a sum of squares"));
+  }
+  // The automatic Jacobian is always LM's.
+  EXPECT_NE(error(Solver::kLbfgs, JacobianMethod::kAutodiff), "");
+  EXPECT_EQ(error(Solver::kLbfgs, JacobianMethod::kCondensed), "");
+  EXPECT_EQ(error(Solver::kAdam, JacobianMethod::kCondensed), "");
+}
+
+// Half a sphere of white: brighter than anything physical, albedo 1.2.
+NeuralBrdf TooBright() {
   const NetworkShape shape(Encoding::kMultiscale, {2}, Activation::kTanh);
   std::vector<double> weights(shape.num_weights(), 0.0);
   for (int c = 1; c <= 3; ++c) weights[shape.offset(1) + 3 * c - 1] = std::log1p(1.2 / kPi);
-  const NeuralBrdf too_bright(shape, weights);
+  return NeuralBrdf(shape, weights);
+}
+
+TEST(FitBrdf, AdamsEnergyTermPullsTheAlbedoDown) {
+  FitProblem problem = SmallProblem();
+  problem.energy_theta = 16;
+  problem.energy_phi = 8;
+  FitOptions options;
+  options.solver = Solver::kAdam;
+  options.adam.batch = 50;
+  options.adam.learning_rate = 2e-3;
+  options.max_iterations = 100;
+  const NeuralBrdf bright = TooBright();
+  EXPECT_NEAR(DirectionalAlbedo(FitBrdf(bright, problem, options).network, 0.5)[0], 1.2, 0.05);
+  problem.energy_weight = 1.0;
+  options.threads = 1;
+  const Fit one = FitBrdf(bright, problem, options);
+  for (double theta_i : {0.1, 0.5, 1.0}) {
+    EXPECT_LT(DirectionalAlbedo(one.network, theta_i)[0], 1.03) << theta_i;
+    EXPECT_GT(DirectionalAlbedo(one.network, theta_i)[0], 0.75) << theta_i;
+  }
+  EXPECT_FALSE(one.summary.energy_stage);  // it's there from the start
+  options.threads = 2;
+  EXPECT_EQ(one.network.weights(), FitBrdf(bright, problem, options).network.weights());
+}
+
+TEST(FitBrdf, EnergyStagePullsTheAlbedoDown) {
+  const NeuralBrdf too_bright = TooBright();  // so the term must act
   FitProblem problem = SmallProblem();
   problem.loss =
       Loss::kL2;  // a robust loss would rather be right at most samples and break out at some
@@ -182,24 +239,94 @@ TEST(FitBrdf, GrowingSamplesEndNearTheErrorOfAllAtOnce) {
   EXPECT_LE(grown.summary.iterations, 100);
 }
 
-TEST(FitBrdf, StopsWhenAskedAndKeepsTheBest) {
-  FitOptions options;
-  double last_cost = 0.0;
-  options.on_iteration = [&](const FitProgress& progress) {
-    last_cost = progress.cost;
-    return progress.iteration < 3;
+// What all solvers have in common: when they stop, and what they report.
+class EverySolver : public testing::TestWithParam<Solver> {
+ protected:
+  struct Run {
+    std::vector<FitProgress> trace;
+    FitSummary summary;
   };
-  const Fit fit = FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options);
-  EXPECT_EQ(fit.summary.termination, Termination::kInterrupted);
-  EXPECT_EQ(fit.summary.iterations, 3);
-  EXPECT_LE(fit.summary.final_cost, last_cost);
+
+  // tolerance and seconds: 0 and an hour, so that none but what `change` sets stops it.
+  template <typename Change>
+  static Run Fit(Change change) {
+    FitOptions options;
+    options.solver = GetParam();
+    options.function_tolerance = 0.0;
+    Run run;
+    options.on_iteration = [&](const FitProgress& progress) {
+      run.trace.push_back(progress);
+      return true;
+    };
+    change(&options);
+    run.summary = FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options).summary;
+    return run;
+  }
+};
+
+TEST_P(EverySolver, StopsAfterTheMostIterationsAndTracesThem) {
+  const Run run = Fit([](FitOptions* options) { options->max_iterations = 4; });
+  EXPECT_EQ(run.summary.termination, Termination::kMaxIterations);
+  EXPECT_EQ(run.summary.iterations, 4);
+  EXPECT_NE(run.summary.message, "");
+  EXPECT_GT(run.summary.seconds, 0.0);
+  ASSERT_EQ(run.trace.size(), 5u);
+  for (int i = 0; i <= 4; ++i) {
+    EXPECT_EQ(run.trace[i].iteration, i);
+    EXPECT_TRUE(std::isfinite(run.trace[i].cost));
+    EXPECT_GT(run.trace[i].heldout_error, 0.0);
+    EXPECT_GE(run.trace[i].seconds, i > 0 ? run.trace[i - 1].seconds : 0.0);
+  }
+  EXPECT_LT(run.summary.final_cost, run.trace[0].cost);
+  EXPECT_LE(run.summary.final_cost, run.trace[4].cost);
 }
 
-TEST(FitBrdf, StopsOnTime) {
+TEST_P(EverySolver, StopsOnTheTolerance) {
+  const Run run = Fit([](FitOptions* options) {
+    options->max_iterations = 1000;
+    options->function_tolerance = 0.3;
+  });
+  EXPECT_EQ(run.summary.termination, Termination::kConverged);
+  EXPECT_LT(run.summary.iterations, 1000);
+  EXPECT_NE(run.summary.message, "");
+}
+
+TEST_P(EverySolver, StopsOnTime) {
+  const Run run = Fit([](FitOptions* options) {
+    options->max_iterations = 1000000;
+    options->max_seconds = 1e-3;
+  });
+  EXPECT_EQ(run.summary.termination, Termination::kMaxSeconds);
+}
+
+TEST_P(EverySolver, StopsWhenAsked) {
+  std::vector<double> costs;
+  const Run run = Fit([&](FitOptions* options) {
+    options->on_iteration = [&](const FitProgress& progress) {
+      costs.push_back(progress.cost);
+      return progress.iteration < 3;
+    };
+  });
+  EXPECT_EQ(run.summary.termination, Termination::kInterrupted);
+  EXPECT_EQ(run.summary.iterations, 3);
+  EXPECT_LE(run.summary.final_cost, costs.back());
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
+                         testing::Values(Solver::kTinyLm, Solver::kLm, Solver::kLbfgs,
+                                         Solver::kAdam),
+                         [](const auto& test) {
+                           return std::string(NameOf(kSolvers, test.param));
+                         });
+
+TEST(FitBrdf, AdamsToleranceIsOfTheMeanOverFiveEpochs) {
   FitOptions options;
-  options.max_seconds = 1e-3;
-  EXPECT_EQ(FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options).summary.termination,
-            Termination::kMaxSeconds);
+  options.solver = Solver::kAdam;
+  options.max_iterations = 100;
+  options.function_tolerance = 10.0;  // the first two means that there are will do
+  const Fit fit = FitBrdf(*MakeBuiltin("satin-gold"), SmallProblem(), options);
+  EXPECT_EQ(fit.summary.iterations, 10);
+  EXPECT_THAT(fit.summary.message, HasSubstr("mean cost of the last 5 epochs"));
 }
 
 TEST(FitBrdf, BadOptionsAreNamed) {

@@ -39,6 +39,36 @@ void Tanh(T* x, std::size_t count);
 template <typename T>
 void Exp(T* x, std::size_t count);
 
+// x = max(0, x), in place, and its derivative: delta = 0 where y <= 0. count: a multiple of kBatch.
+template <typename T>
+void Relu(T* x, std::size_t count);
+template <typename T>
+void ReluSlopes(const T* y, std::size_t count, T* delta);
+
+// The gradient with respect to z of, for each of kBatch samples,
+//
+//   log_weight * sum_c |log1p(f_c cos_i) - log1p(f^_c cos_i)|
+//     + chromaticity_weight * |log1p(|f cos_i|^2) - log1p(|f^ cos_i|^2)|,   f^_c = expm1(z_c),
+//
+// eqs. 6 and 7; 0 where cos_i = 0. By feature: z, f and gradient 3 x kBatch, cos_i kBatch, in
+// [0, 1].
+template <typename T>
+void AbsoluteLossGradient(const T* z, const T* cos_i, const T* f, T log_weight,
+                          T chromaticity_weight, T* gradient);
+
+// sums[c] += the sum over kBatch samples of weights[n] max(0, expm1(z[c][n])), c < 3: a part of a
+// directional albedo. By feature: z 3 x kBatch.
+template <typename T>
+void AddReflectanceSums(const T* z, const T* weights, T* sums);
+
+// A step of Adam without its corrections of bias, which are the caller's:
+//   mean = beta1 mean + (1 - beta1) g,  square = beta2 square + (1 - beta2) g^2,
+//   x -= rate mean / (sqrt(square) + epsilon).
+// A mean or square below 1e-35 becomes 0. count: a multiple of kPad.
+template <typename T>
+void AdamStep(std::size_t count, const T* gradient, T rate, T beta1, T beta2, T epsilon, T* mean,
+              T* square, T* x);
+
 // out[n][(i, j)] = a[n][i] b[n][j], for n < kBatch. By sample:
 //   a: stride Padded(na), kPad readable elements behind the last sample; likewise b with nb.
 //   out: pairs (i, j) in order, j fastest; with `symmetric` (a == b) those with j >= i only. Sample

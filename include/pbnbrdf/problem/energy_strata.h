@@ -14,8 +14,9 @@ namespace pbnbrdf {
 // cos theta_i, at the middle.
 double StratumAngle(int k, int strata);
 
-// 1/2 weight sum over strata k and channels of r^2, r as in residuals/energy_residual.h. The nodes
-// of the quadrature don't move while fitting: they are encoded once.
+// 1/2 weight sum over strata k and channels of r^2, r as in residuals/energy_residual.h; with
+// Loss::kAbsolute weight times eq. 5, the mean over channels. The nodes of the quadrature don't move
+// while fitting: they are encoded once.
 template <typename T>
 class EnergyStrata {
  public:
@@ -24,7 +25,8 @@ class EnergyStrata {
 
   double Cost(const T* weights) const;
 
-  // Adds the term's cost, gradient and, unless at->hessian is empty, J'J. Only strata whose albedo exceeds 1 have derivatives.
+  // Adds the term's cost, gradient and, unless at->hessian is empty, J'J. Only strata whose albedo
+  // exceeds 1 have derivatives.
   void Linearize(const T* weights, Linearization* at) const;
 
   // The directional albedo of each stratum.
@@ -40,7 +42,12 @@ class EnergyStrata {
   void AlbedoGradients(const T* weights, const Stratum& stratum, double* gradients) const;
 
   NetworkShape shape_;
-  double residual_scale_ = 0.0;  // sqrt(weight * solid angle)
+  // The cost and its slope for an albedo that exceeds 1 by so much.
+  double CostOf(double excess) const;
+  double SlopeOf(double excess) const;
+
+  bool absolute_ = false;
+  double weight_ = 0.0;  // with the solid angle of a stratum
   std::vector<Stratum> strata_;
 };
 

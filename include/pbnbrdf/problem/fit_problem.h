@@ -1,10 +1,16 @@
 // fit_problem.h: the description of a fit: network, terms, samples. With a material it is a
-// complete least-squares problem: minimise over the network's weights
+// complete problem: minimise over the network's weights
 //
 //   1/2 sum over terms t of weight_t * mean over samples of rho(|r_t|^2)  +  1/2 weight_e |r_e|^2,
 //
 // r_t the residuals of the log and chromaticity terms (eqs. 6, 7) at a sample, rho the robust loss,
-// r_e those of the energy term (eq. 5) over all strata of incident angles.
+// r_e those of the energy term (eq. 5) over all strata of incident angles. Loss::kAbsolute stands
+// for the papers' own sum instead, which isn't one of squares:
+//
+//   sum over terms t of weight_t * mean over samples and channels of |r_t|  +  weight_e EAL,
+//
+// EAL the integral over incident directions of max(0, albedo - 1), the mean over channels. At its
+// kinks, r = 0 and albedo = 1, the gradient takes the term's part for 0.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +28,19 @@ class LossFunction;
 
 namespace pbnbrdf {
 
-enum class Loss { kL2, kSoftL1, kHuber, kCauchy };
+enum class Loss {
+  kL2,
+  kSoftL1,
+  kHuber,
+  kCauchy,
+  kAbsolute,  // of first-order solvers only
+};
 
-inline constexpr NameTable<Loss, 4> kLosses = {{{"l2", Loss::kL2},
+inline constexpr NameTable<Loss, 5> kLosses = {{{"l2", Loss::kL2},
                                                 {"soft_l1", Loss::kSoftL1},
                                                 {"huber", Loss::kHuber},
-                                                {"cauchy", Loss::kCauchy}}};
+                                                {"cauchy", Loss::kCauchy},
+                                                {"absolute", Loss::kAbsolute}}};
 
 // Of the network's passes; residuals, their derivatives and all long sums are always double.
 enum class Precision { kSingle, kDouble };
@@ -35,11 +48,21 @@ enum class Precision { kSingle, kDouble };
 inline constexpr NameTable<Precision, 2> kPrecisions = {
     {{"single", Precision::kSingle}, {"double", Precision::kDouble}}};
 
+// Uniform random weights.
+enum class Initialization {
+  kGlorot,  // Glorot and Bengio 2010; the last layer's biases are the mean of log(1 + f)
+  kNbrdf,   // NBRDF's: within +-0.05, biases 0; what Adam gets furthest from
+};
+
+inline constexpr NameTable<Initialization, 2> kInitializations = {
+    {{"glorot", Initialization::kGlorot}, {"nbrdf", Initialization::kNbrdf}}};
+
 struct FitProblem {
   // The network.
   Encoding encoding = Encoding::kMultiscale;
   std::vector<int> hidden = {21, 21};
   Activation activation = Activation::kTanh;
+  Initialization initialization = Initialization::kGlorot;
 
   // The terms' weights, >= 0; 0: the term is absent. At least one > 0.
   double log_weight = 1.0;
@@ -71,12 +94,12 @@ struct FitProblem {
   void Validate() const;
 };
 
-// rho, or null for l2, which Ceres takes for rho(s) = s.
+// rho, or null for l2, which Ceres takes for rho(s) = s, and for absolute, which has none.
 std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale);
 
-// Uniform (Glorot and Bengio 2010); the last layer's biases are the mean of log(1 + f) over the
-// samples. shape.num_weights() numbers.
+// Where a fit to `samples` starts: shape.num_weights() numbers.
 std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
-                                   std::uint64_t seed);
+                                   std::uint64_t seed,
+                                   Initialization initialization = Initialization::kGlorot);
 
 }  // namespace pbnbrdf

@@ -1,46 +1,36 @@
-// minibatch_gradient.h: the gradient of the papers' own loss on a few samples, for stochastic
-// solvers.
-//
-//   mean over samples of  log_weight * mean_c |r_log,c|  +  chromaticity_weight * |r_chromaticity|,
-//
-// eqs. 6 and 7 with f^ = max(0, expm1(z)), clamped as NBRDF trains it: no gradient where f^ = 0.
+// minibatch_gradient.h: the gradient of the papers' own loss (Loss::kAbsolute) on a minibatch.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
 #include <vector>
 
 #include "pbnbrdf/base/aligned_vector.h"
-#include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/network/batched_mlp.h"
 #include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/problem/minibatches.h"
 
 namespace pbnbrdf {
 
-// In single precision. The problem's robust loss and energy term play no part.
+// In single precision, on one thread: a minibatch is too little work to share.
 class MinibatchGradient {
  public:
-  MinibatchGradient(const FitProblem& problem, std::span<const BrdfSample> samples);
-  ~MinibatchGradient();
+  explicit MinibatchGradient(const FitProblem& problem);
 
-  std::size_t num_samples() const { return num_samples_; }
-
-  // gradient: P numbers, the mean over the samples of those indices; the same for any number of
-  // threads.
-  void Evaluate(const float* weights, std::span<const std::uint32_t> indices, float* gradient);
+  // gradient: P numbers, the means over the samples and over the albedos of that minibatch. An
+  // albedo is clamped below at 0 for each node, as the network is when evaluated (eq. 5).
+  void Evaluate(const float* weights, const Minibatches& minibatches, std::size_t minibatch,
+                float* gradient);
 
  private:
-  struct Block;
+  static constexpr int kChannels = NetworkShape::kChannels;
 
-  void EvaluateBlock(const float* weights, std::span<const std::uint32_t> indices, float scale,
-                     Block* block) const;
+  void AddBlock(const float* weights, const float* block, float scale, float* gradient);
+  void AddAlbedo(const float* weights, const Minibatches& minibatches,
+                 const Minibatches::Albedo& albedo, float scale, float* gradient);
+  void AddNodes(const float* weights, const float* block, const float* scales, float* gradient);
 
   NetworkShape shape_;
-  float log_weight_, chromaticity_weight_;
-  std::size_t num_samples_;
-  AlignedVector<float> samples_;                // sample after sample: encoded pair, cos_i, f
-  std::vector<std::unique_ptr<Block>> blocks_;  // a kernels::kBatch of the minibatch each
+  float log_weight_, chromaticity_weight_, energy_weight_;
+  BatchedMlp<float> mlp_;
 };
 
 }  // namespace pbnbrdf

@@ -21,10 +21,11 @@ class Objective {
   // The cost; not finite where the network overflows. weights: shape().num_weights().
   virtual double Cost(const double* weights) = 0;
 
-  // False, with `at` unspecified, if the cost or a derivative isn't finite.
+  // False, with `at` unspecified, if the cost or a derivative isn't finite. Not with
+  // Loss::kAbsolute, which has no residuals whose squares add up to the cost.
   virtual bool Linearize(const double* weights, Linearization* at) = 0;
 
-  // The cost and its gradient (J'r, P) alone. False, with both unspecified, if they aren't finite.
+  // The cost and its gradient (P; J'r where there are residuals) alone. False, with both unspecified, if they aren't finite.
   virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;
 
   // About the largest error of hessian, relative to its diagonal, that rounding makes.

@@ -11,7 +11,8 @@ namespace pbnbrdf {
 // Ceres finds no usable step.
 StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options);
 
-// L-BFGS with line search. weights: as above.
+// L-BFGS with line search; converged too where that finds no lower cost, as at the kinks of
+// Loss::kAbsolute. weights: as above. Throws Error if the objective isn't finite at the start.
 StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options,
                                std::vector<double>* weights);
 

@@ -28,7 +28,7 @@ enum class Solver {
   kTinyLm,  // Levenberg-Marquardt on the normal equations (tiny_lm.h)
   kLm,  // Ceres' Levenberg-Marquardt (ceres_solvers.h): the same steps, at several times the cost
   kLbfgs,  // Ceres' L-BFGS: cheap iterations, but thousands of them
-  kAdam,   // Adam on minibatches of the papers' own loss (adam.h), without the energy term
+  kAdam,   // Adam on minibatches of the papers' own loss (adam.h), the published solver
 };
 
 inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
@@ -41,7 +41,8 @@ struct FitOptions {
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
   int max_iterations = 150;     // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;  // > 0
-  double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
+  double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
+                                     // with Adam is that of a mean (adam.h)
   AdamOptions adam;                  // of Solver::kAdam
   int threads = 0;                   // 0: as many as the machine has
   // Called after each iteration if set; false stops the fit with the best weights so far.
@@ -51,7 +52,7 @@ struct FitOptions {
 struct FitSummary {
   double final_cost = 0.0;    // fit_problem.h
   int iterations = 0;         // of all stages
-  bool energy_stage = false;  // whether an albedo above 1 called for the energy term
+  bool energy_stage = false;  // whether an albedo above 1 called for a stage with the energy term
   double seconds = 0.0;       // with sampling the material, without reading it or evaluating errors
   Termination termination = Termination::kConverged;
   std::string message;  // the solver's own words
@@ -68,9 +69,9 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options);
 
 // The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
 // same network to the last bit, whatever the number of threads. The energy term joins in a second
-// stage, if the directional albedo of the first stage's network exceeds 1 in a stratum. Throws
-// Error as ValidateFit does, if the material has next to no data, or if the solver finds no usable
-// step.
+// stage, if the directional albedo of the first stage's network exceeds 1 in a stratum; Adam, as
+// published, has it and all samples from the start. Throws Error as ValidateFit does, if the
+// material has next to no data, or if the solver finds no usable step.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf
