@@ -5,7 +5,8 @@
 #include "pbnbrdf/base/text.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
-DEFINE_string(encoding, "multiscale", "the network's input: cartesian | reciprocal | multiscale");
+DEFINE_string(encoding, "merl",
+              "the network's input: cartesian | reciprocal | multiscale | merl (README: Encodings)");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
 DEFINE_string(initialization, "glorot",
@@ -32,6 +33,7 @@ DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
 DEFINE_string(solver, "tiny_lm",
               "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres' | adam");
+DEFINE_uint64(curvature_samples, 4096, "tiny_lm: samples that J'J is summed over, others each time");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, always with lm");
 DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations (adam: epochs)");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
@@ -91,6 +93,7 @@ FitOptions ParseOptions() {
   FitOptions options;
   options.solver = ParseName(kSolvers, "solver", FLAGS_solver);
   options.jacobian = ParseName(kJacobianMethods, "jacobian", FLAGS_jacobian);
+  options.curvature_samples = FLAGS_curvature_samples;
   options.max_iterations = FLAGS_max_iterations;
   options.max_seconds = FLAGS_max_seconds;
   options.function_tolerance = FLAGS_function_tolerance;
@@ -110,7 +113,7 @@ std::vector<FlagGroup> ProblemFlags() {
             "energy_theta", "energy_phi", "loss", "loss_scale"}},
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
-           {"solver", "jacobian", "max_iterations", "max_seconds", "function_tolerance", "batch",
+           {"solver", "jacobian", "curvature_samples", "max_iterations", "max_seconds", "function_tolerance", "batch",
             "learning_rate", "energy_angles"}}};
 }
 

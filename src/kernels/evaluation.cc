@@ -135,16 +135,31 @@ void ReciprocalInputs(const double* pairs, float* inputs) {
   });
 }
 
-void MultiscaleInputs(const double* pairs, float* inputs) {
-  EncodeAll(pairs, inputs, [](const HalfDiffVectors& v, float* to) HWY_ATTR {
+// The inputs but the first, which is first(vectors, sqrt(2 theta_h / pi)).
+template <class First>
+HWY_INLINE void ScaledInputs(const double* pairs, float* inputs, First first) {
+  EncodeAll(pairs, inputs, [&](const HalfDiffVectors& v, float* to) HWY_ATTR {
     constexpr float kTwoPerPi = 0.636619772f;
     const F d;
     const DoubledPhi doubled(v);
     const V theta_h = AngleOf(d, v.sin_h, v.cos_h);
     const V scaled = hn::Mul(theta_h, hn::Set(d, kTwoPerPi));
+    const V root = hn::Mul(scaled, InverseLength(scaled));
     const V log = hn::Log(d, hn::Add(theta_h, hn::Set(d, 1e-3f)));
-    StoreFeatures(to, v.sin_h, hn::Mul(scaled, InverseLength(scaled)),
-                  hn::Mul(log, hn::Set(d, 1.0f / 3.0f)), doubled.x, doubled.y, v.dz);
+    StoreFeatures(to, first(v, root), root, hn::Mul(log, hn::Set(d, 1.0f / 3.0f)), doubled.x,
+                  doubled.y, v.dz);
+  });
+}
+
+void MultiscaleInputs(const double* pairs, float* inputs) {
+  ScaledInputs(pairs, inputs, [](const HalfDiffVectors& v, V) HWY_ATTR { return v.sin_h; });
+}
+
+void MerlInputs(const double* pairs, float* inputs) {
+  ScaledInputs(pairs, inputs, [](const HalfDiffVectors&, V root) HWY_ATTR {
+    const F d;
+    const V row = hn::Mul(root, hn::Set(d, 90.0f)), u = hn::Sub(row, hn::Floor(row));
+    return hn::Mul(hn::Mul(hn::Set(d, 4.0f), u), hn::Sub(hn::Set(d, 1.0f), u));
   });
 }
 
@@ -184,6 +199,7 @@ namespace pbnbrdf::kernels {
 HWY_EXPORT(CartesianInputs);
 HWY_EXPORT(ReciprocalInputs);
 HWY_EXPORT(MultiscaleInputs);
+HWY_EXPORT(MerlInputs);
 HWY_EXPORT(RgbReflectances);
 
 void EncodeCartesian(const double* pairs, float* inputs) {
@@ -196,6 +212,10 @@ void EncodeReciprocal(const double* pairs, float* inputs) {
 
 void EncodeMultiscale(const double* pairs, float* inputs) {
   HWY_DYNAMIC_DISPATCH(MultiscaleInputs)(pairs, inputs);
+}
+
+void EncodeMerl(const double* pairs, float* inputs) {
+  HWY_DYNAMIC_DISPATCH(MerlInputs)(pairs, inputs);
 }
 
 void Reflectances(const float* z, float largest, double* f) {

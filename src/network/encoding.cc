@@ -6,6 +6,15 @@
 #include "pbnbrdf/brdf/half_diff.h"
 
 namespace pbnbrdf {
+namespace {
+
+// 4 u (1 - u), u the fraction of 90 x: 0 at the rows of a MERL table, 1 midway.
+double RowBend(double x) {
+  const double row = 90.0 * x, u = row - std::floor(row);
+  return 4.0 * u * (1.0 - u);
+}
+
+}  // namespace
 
 std::array<double, kEncodedSize> Encode(Encoding encoding, const DirectionPair& pair) {
   const auto [h, d] = ToHalfDiff(pair);
@@ -20,10 +29,12 @@ std::array<double, kEncodedSize> Encode(Encoding encoding, const DirectionPair& 
       const double per_s = s2 > 0.0 ? 1.0 / std::sqrt(s2) : 0.0;
       return {sin_h, 0.0, h.z, doubled_x * per_s, doubled_y * per_s, d.z};
     }
-    case Encoding::kMultiscale: {
+    case Encoding::kMultiscale:
+    case Encoding::kMerl: {
       const double theta_h = std::atan2(sin_h, h.z);
-      return {sin_h,
-              std::sqrt(theta_h * 2.0 / std::numbers::pi),
+      const double root = std::sqrt(theta_h * 2.0 / std::numbers::pi);
+      return {encoding == Encoding::kMerl ? RowBend(root) : sin_h,
+              root,
               std::log(theta_h + 1e-3) / 3.0,
               doubled_x,
               doubled_y,

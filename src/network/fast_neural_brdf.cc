@@ -26,6 +26,8 @@ void EncodeBatch(Encoding encoding, const DirectionPair* pairs, float* inputs) {
       return kernels::EncodeReciprocal(components, inputs);
     case Encoding::kMultiscale:
       return kernels::EncodeMultiscale(components, inputs);
+    case Encoding::kMerl:
+      return kernels::EncodeMerl(components, inputs);
   }
 }
 

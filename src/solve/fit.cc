@@ -18,6 +18,17 @@ constexpr std::size_t kHeldOutSamples = 4096;
 constexpr std::uint64_t kHeldOutSeed = 1;
 constexpr int kMostSecondOrderWeights = 10000;
 
+// Samples of the training distribution that no solver sees tell when more samples are wanted:
+// where the cost of these exceeds that of the training samples by a factor of kOverfit.
+constexpr std::size_t kValidationSamples = 4096;
+constexpr std::uint64_t kValidationSeed = 0x9e3779b97f4a7c15;
+constexpr double kOverfit = 1.1;
+
+// When a stage is slow, more samples promise more than more iterations; idle, nothing does.
+constexpr std::size_t kSlowIterations = 6, kIdleIterations = 30;
+constexpr double kSlowFall = 0.3, kIdleFall = 0.03;
+constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
+
 // A clock that can be stopped.
 class Stopwatch {
  public:
@@ -36,19 +47,21 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-// Whether a stage has come to where more samples promise more than more iterations.
+// Whether a number that is watched has all but ceased to fall.
 class Slowdown {
  public:
-  // True once the least cost has fallen by less than a part of kLeastFall over kIterations.
-  bool Observe(double cost) {
-    least_.push_back(least_.empty() ? cost : std::min(cost, least_.back()));
-    if (least_.size() <= kIterations) return false;
-    return least_.back() > (1.0 - kLeastFall) * least_[least_.size() - 1 - kIterations];
+  // Slow: its least value has fallen by less than a part of `fall` over `iterations`.
+  Slowdown(std::size_t iterations, double fall) : iterations_(iterations), fall_(fall) {}
+
+  bool Observe(double value) {
+    least_.push_back(least_.empty() ? value : std::min(value, least_.back()));
+    if (least_.size() <= iterations_) return false;
+    return least_.back() > (1.0 - fall_) * least_[least_.size() - 1 - iterations_];
   }
 
  private:
-  static constexpr std::size_t kIterations = 6;
-  static constexpr double kLeastFall = 0.3;
+  std::size_t iterations_;
+  double fall_;
   std::vector<double> least_;  // so far, at each iteration
 };
 
@@ -58,7 +71,12 @@ class Fitter {
       : options_(options),
         samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling, problem.samples,
                              problem.seed)),
-        weights_(InitialWeights(problem.Shape(), samples_, problem.seed, problem.initialization)) {
+        validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling,
+                                        kValidationSamples, problem.seed + kValidationSeed)),
+        count_(std::min(problem.first_samples, samples_.size())),
+        weights_(InitialWeights(problem.Shape(), samples_, problem.seed, problem.initialization)),
+        iterations_left_(options.max_iterations) {
+    if (options.solver == Solver::kAdam) count_ = samples_.size();  // it draws its own few
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
@@ -69,14 +87,11 @@ class Fitter {
   // Minimises from where the last stage ended, on few samples at first and then on more and more.
   void RunStages(const FitProblem& problem) {
     iterations_left_ = options_.max_iterations;
-    std::size_t count = std::min(problem.first_samples, samples_.size());
-    if (options_.solver == Solver::kAdam) count = samples_.size();  // it draws its own few
-    while (true) {
-      RunStage(problem, std::span(samples_).first(count));
-      if (count == samples_.size() || iterations_left_ == 0 || !MayContinue()) return;
-      const double grown = std::ceil(problem.growth * static_cast<double>(count));
-      count = grown < static_cast<double>(samples_.size()) ? static_cast<std::size_t>(grown)
-                                                           : samples_.size();
+    validation_ = MakeObjective(problem, validation_samples_);
+    while (RunStage(problem) && iterations_left_ > 0 && MayContinue()) {
+      const double grown = std::ceil(problem.growth * static_cast<double>(count_));
+      count_ = grown < static_cast<double>(samples_.size()) ? static_cast<std::size_t>(grown)
+                                                            : samples_.size();
     }
   }
 
@@ -90,29 +105,42 @@ class Fitter {
 
   FitSummary Finish() {
     summary_.seconds = stopwatch_.Seconds();
+    summary_.samples = count_;
     return summary_;
   }
 
  private:
-  void RunStage(const FitProblem& problem, std::span<const BrdfSample> samples) {
-    Slowdown slowdown;
-    const bool last = samples.size() == samples_.size();
+  // Whether it ended for want of samples.
+  bool RunStage(const FitProblem& problem) {
+    enum class End { kNone, kInterrupted, kWantsSamples, kNoGain } end = End::kNone;
+    const std::size_t pace = options_.solver == Solver::kLbfgs ? kLbfgsPace : 1;
+    Slowdown slow(pace * kSlowIterations, kSlowFall), idle(pace * kIdleIterations, kIdleFall);
     StageOptions stage;
     stage.max_iterations = iterations_left_;
+    stage.curvature_samples = options_.curvature_samples;
     stage.function_tolerance = options_.function_tolerance;
     stage.seconds_left = [&] { return options_.max_seconds - stopwatch_.Seconds(); };
     stage.on_iteration = [&](int iteration, double cost) {
-      interrupted_ = options_.on_iteration && !Report(iteration, cost);
-      return !interrupted_ && (last || !slowdown.Observe(cost));
+      if (options_.on_iteration && !Report(iteration, cost)) end = End::kInterrupted;
+      if (options_.solver == Solver::kAdam || end != End::kNone) return end == End::kNone;
+      const double validation = validation_->Cost(weights_.data());
+      const bool wants_samples = count_ < samples_.size() && validation > kOverfit * cost;
+      if (slow.Observe(cost) && wants_samples) end = End::kWantsSamples;
+      if (idle.Observe(validation)) end = wants_samples ? End::kWantsSamples : End::kNoGain;
+      return end == End::kNone;
     };
-    const StageResult result = Minimize(problem, samples, stage);
+    const StageResult result = Minimize(problem, std::span(samples_).first(count_), stage);
     summary_.final_cost = result.cost;
     summary_.iterations += result.iterations;
     iterations_left_ -= result.iterations;
-    summary_.termination = result.termination == Termination::kInterrupted && !interrupted_
-                               ? Termination::kConverged
-                               : result.termination;
+    summary_.termination = result.termination;
     summary_.message = result.message;
+    if (end == End::kNoGain || end == End::kWantsSamples) {
+      summary_.termination = Termination::kConverged;
+      summary_.message = "neither more samples nor more iterations help";
+    }
+    if (result.termination == Termination::kConverged) return count_ < samples_.size();
+    return end == End::kWantsSamples;
   }
 
   StageResult Minimize(const FitProblem& problem, std::span<const BrdfSample> samples,
@@ -153,12 +181,12 @@ class Fitter {
 
   Stopwatch stopwatch_;
   const FitOptions& options_;
-  std::vector<BrdfSample> samples_;
+  std::vector<BrdfSample> samples_, validation_samples_;
+  std::size_t count_;  // of the samples in use
   std::vector<double> weights_;
-  std::unique_ptr<Objective> heldout_;
+  std::unique_ptr<Objective> validation_, heldout_;
   FitSummary summary_;
-  int iterations_left_ = 0;
-  bool interrupted_ = false;
+  int iterations_left_;
 };
 
 // The energy term waits until the rest is fitted: from random weights its square outweighs all else
@@ -198,6 +226,7 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
     Fail("hidden: makes ", weights, " weights; a second-order solver takes at most ",
          kMostSecondOrderWeights, ", as its memory grows with their square");
   }
+  if (options.curvature_samples < 1) Fail("curvature_samples = 0; must be >= 1");
   if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");
   const bool has_squares = second_order || options.jacobian == JacobianMethod::kAutodiff;
   if (has_squares && problem.loss == Loss::kAbsolute) {

@@ -71,7 +71,7 @@ class TinyLm {
         cholesky_(static_cast<int>(best->size())) {}
 
   StageResult Run() {
-    if (!objective_->Linearize(x_.data(), &at_))
+    if (!Linearize(x_, &at_))
       Fail("the cost isn't finite at the first weights: check the terms' weights and loss_scale");
     StepJudge judge(at_.cost);
     result_.cost = at_.cost;
@@ -89,7 +89,7 @@ class TinyLm {
         continue;
       }
       const double tolerated = options_.function_tolerance * at_.cost;
-      if (!objective_->Linearize(trial_.data(), &next_)) {
+      if (!Linearize(trial_, &next_)) {
         ShrinkRadius();
         continue;
       }
@@ -108,6 +108,12 @@ class TinyLm {
   }
 
  private:
+  // J'J from another part of the samples each time.
+  bool Linearize(const std::vector<double>& x, Linearization* at) {
+    const std::size_t parts = objective_->num_samples() / options_.curvature_samples;
+    return objective_->Linearize(x.data(), {linearizations_++, std::max<std::size_t>(parts, 1)}, at);
+  }
+
   bool MayContinue(double cost) {
     if (options_.on_iteration && !options_.on_iteration(result_.iterations, cost)) {
       return Stop(Termination::kInterrupted, "the user stopped it");
@@ -196,6 +202,7 @@ class TinyLm {
   std::vector<double> x_, trial_, step_, scale_;
   Linearization at_, next_;
   Cholesky cholesky_;
+  std::size_t linearizations_ = 0;
   double radius_ = kFirstRadius, shrink_ = 2.0;
   StageResult result_;
 };

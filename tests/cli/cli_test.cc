@@ -74,7 +74,7 @@ TEST_F(Cli, HelpTeaches) {
 TEST_F(Cli, HelpNamesEveryChoice) {
   const std::string help = Run("fit --help").out;
   for (const char* choices :
-       {"cartesian | reciprocal | multiscale", "tanh | relu", "l2 | soft_l1 | huber | cauchy",
+       {"cartesian | reciprocal | multiscale | merl", "tanh | relu", "l2 | soft_l1 | huber | cauchy",
         "uniform", "highlight", "single | double", "condensed | autodiff"}) {
     EXPECT_THAT(help, HasSubstr(choices));
   }

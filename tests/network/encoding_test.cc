@@ -7,7 +7,7 @@ namespace {
 
 TEST(Encoding, ReciprocalOnesAreSoToTheBit) {
   for (const DirectionPair& pair : HardAndRandomPairs(100000, /*seed=*/1)) {
-    for (Encoding encoding : {Encoding::kReciprocal, Encoding::kMultiscale}) {
+    for (Encoding encoding : {Encoding::kReciprocal, Encoding::kMultiscale, Encoding::kMerl}) {
       const auto there = Encode(encoding, pair), back = Encode(encoding, Swapped(pair));
       for (int i = 0; i < kEncodedSize; ++i) {
         ASSERT_EQ(there[i], back[i]) << NameOf(kEncodings, encoding) << " input " << i;
@@ -36,10 +36,14 @@ TEST(Encoding, IsWhatTheFormulasSay) {
                                             sd * sd * std::cos(2 * pd),
                                             sd * sd * std::sin(2 * pd),
                                             std::cos(td)};
+  const double row = 90 * std::sqrt(2 * th / kPi);  // 50.78: between rows 50 and 51 of a table
+  std::array<double, 6> merl = multiscale;
+  merl[0] = 4 * (row - 50) * (51 - row);
   for (int i = 0; i < kEncodedSize; ++i) {
     EXPECT_NEAR(Encode(Encoding::kCartesian, pair)[i], cartesian[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kReciprocal, pair)[i], reciprocal[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kMultiscale, pair)[i], multiscale[i], 1e-14);
+    EXPECT_NEAR(Encode(Encoding::kMerl, pair)[i], merl[i], 1e-12);
   }
 }
 

@@ -23,7 +23,7 @@ TEST(NeuralBrdf, ReciprocityIsExactToTheBit) {
   for (const DirectionPair& pair : pairs) swapped.push_back(Swapped(pair));
   // Another order, so that a pair and its exchange meet in different lanes of different batches.
   std::reverse(swapped.begin(), swapped.end());
-  for (Encoding encoding : {Encoding::kReciprocal, Encoding::kMultiscale}) {
+  for (Encoding encoding : {Encoding::kReciprocal, Encoding::kMultiscale, Encoding::kMerl}) {
     for (Activation activation : {Activation::kTanh, Activation::kRelu}) {
       const NeuralBrdf network = RandomNetwork(encoding, activation);
       std::vector<Rgb> there(pairs.size()), back(pairs.size());
@@ -88,7 +88,7 @@ TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {
   EXPECT_THAT(read([](auto& f) { f.metadata.erase("encoding"); }),
               HasSubstr("n.safetensors: not a fitted network: __metadata__ lacks encoding"));
   EXPECT_THAT(read([](auto& f) { f.metadata["encoding"] = "polar"; }),
-              HasSubstr("encoding=polar is not one of cartesian | reciprocal | multiscale"));
+              HasSubstr("encoding=polar is not one of cartesian | reciprocal | multiscale | merl"));
   EXPECT_THAT(read([](auto& f) { f.metadata["output"] = "exp"; }), HasSubstr("output=exp"));
   EXPECT_THAT(read([](auto& f) { f.tensors.erase("fc2.weight"); }), HasSubstr("5 tensors"));
   EXPECT_THAT(read([](auto& f) { f.tensors["fc2.weight"] = f.tensors["fc1.weight"]; }),

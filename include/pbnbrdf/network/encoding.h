@@ -19,15 +19,21 @@ enum class Encoding {
   // reciprocal too, smooth where s = 0, and with theta_h on three scales, which resolves lobes of
   // any width.
   kMultiscale,
+  // As kMultiscale, with 4 u (1 - u) for sin th: u in [0, 1) is where th lies between two rows of a
+  // MERL table, the fraction of 90 sqrt(2 th / pi). A table interpolated linearly has a kink at
+  // each row, and across a sharp highlight f changes tenfold from one to the next: there the bends
+  // in between are most of what a smooth network misses.
+  kMerl,
 };
 
-inline constexpr NameTable<Encoding, 3> kEncodings = {{{"cartesian", Encoding::kCartesian},
+inline constexpr NameTable<Encoding, 4> kEncodings = {{{"cartesian", Encoding::kCartesian},
                                                        {"reciprocal", Encoding::kReciprocal},
-                                                       {"multiscale", Encoding::kMultiscale}}};
+                                                       {"multiscale", Encoding::kMultiscale},
+                                                       {"merl", Encoding::kMerl}}};
 
 inline constexpr int kEncodedSize = 6;
 
-// kReciprocal and kMultiscale give the same bits for a pair and for the pair with wi and wo
+// All but kCartesian give the same bits for a pair and for the pair with wi and wo
 // exchanged, hence any network behind them is reciprocal exactly.
 std::array<double, kEncodedSize> Encode(Encoding encoding, const DirectionPair& pair);
 

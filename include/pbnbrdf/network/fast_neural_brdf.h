@@ -7,7 +7,7 @@
 namespace pbnbrdf {
 
 // The same network as a NeuralBrdf, encoded and passed through in single precision, several pairs to
-// an instruction: about 1e-5 of the value and 1e-6 1/sr apart from it. Networks that are
+// an instruction: about 1e-5 (merl: 1e-4) of the value and 1e-6 1/sr apart from it. Networks that are
 // exactly reciprocal in double precision are so here.
 class FastNeuralBrdf final : public Brdf {
  public:

@@ -59,7 +59,7 @@ inline constexpr NameTable<Initialization, 2> kInitializations = {
 
 struct FitProblem {
   // The network.
-  Encoding encoding = Encoding::kMultiscale;
+  Encoding encoding = Encoding::kMerl;
   std::vector<int> hidden = {21, 21};
   Activation activation = Activation::kTanh;
   Initialization initialization = Initialization::kGlorot;

@@ -18,12 +18,16 @@ class Objective {
 
   virtual const NetworkShape& shape() const = 0;
 
+  // Of the training samples.
+  virtual std::size_t num_samples() const = 0;
+
   // The cost; not finite where the network overflows. weights: shape().num_weights().
   virtual double Cost(const double* weights) = 0;
 
   // False, with `at` unspecified, if the cost or a derivative isn't finite. Not with
   // Loss::kAbsolute, which has no residuals whose squares add up to the cost.
-  virtual bool Linearize(const double* weights, Linearization* at) = 0;
+  virtual bool Linearize(const double* weights, CurvaturePart part, Linearization* at) = 0;
+  bool Linearize(const double* weights, Linearization* at) { return Linearize(weights, {}, at); }
 
   // The cost and its gradient (P; J'r where there are residuals) alone. False, with both unspecified, if they aren't finite.
   virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;

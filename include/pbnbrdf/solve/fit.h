@@ -39,6 +39,8 @@ inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
 struct FitOptions {
   Solver solver = Solver::kTinyLm;
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
+  // tiny_lm sums J'J over about so many of the samples, others each time (linearization.h); >= 1.
+  std::size_t curvature_samples = 4096;
   int max_iterations = 150;     // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;  // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
@@ -52,6 +54,7 @@ struct FitOptions {
 struct FitSummary {
   double final_cost = 0.0;    // fit_problem.h
   int iterations = 0;         // of all stages
+  std::size_t samples = 0;    // that the fit had grown to
   bool energy_stage = false;  // whether an albedo above 1 called for a stage with the energy term
   double seconds = 0.0;       // with sampling the material, without reading it or evaluating errors
   Termination termination = Termination::kConverged;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ inline constexpr NameTable<Termination, 4> kTerminations = {
 
 struct StageOptions {
   int max_iterations = 0;
+  std::size_t curvature_samples = std::numeric_limits<std::size_t>::max();  // fit.h
   double function_tolerance = 0.0;  // stop when |cost change| < function_tolerance * cost
   std::function<double()> seconds_left;
   // Called after each iteration, the weights being the best so far; false stops.
