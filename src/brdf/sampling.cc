@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/half_diff.h"
@@ -39,30 +38,35 @@ bool IsUsable(const Rgb& value) {
 
 }  // namespace
 
-std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
-                                    std::size_t count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::vector<BrdfSample> samples;
-  samples.reserve(count);
+void SampleStream::Draw(std::size_t count, std::vector<BrdfSample>* samples) {
+  const std::size_t end = samples->size() + count;
+  samples->reserve(end);
   std::vector<DirectionPair> pairs;
   std::vector<Rgb> values(kBatch);
-  for (std::size_t drawn = 0; samples.size() < count; ++drawn) {
-    if (drawn >= kDrawsPerKnown * (samples.size() + 100)) {
-      Fail("too little data: ", samples.size(), " of ", drawn, " random angles are known");
+  for (std::size_t drawn = 0; samples->size() < end; ++drawn) {
+    const std::size_t missing = end - samples->size();
+    if (drawn >= kDrawsPerKnown * (count - missing + 100)) {
+      Fail("too little data: ", count - missing, " of ", drawn, " random angles are known");
     }
     RusinkiewiczAngles angles;
-    angles.theta_h = DrawThetaH(sampling, random);
-    angles.theta_d = 0.5 * kPi * UniformOf(set, random);
-    angles.phi_d = 2.0 * kPi * Uniform(random);
+    angles.theta_h = DrawThetaH(sampling_, random_);
+    angles.theta_d = 0.5 * kPi * UniformOf(set_, random_);
+    angles.phi_d = 2.0 * kPi * Uniform(random_);
     const DirectionPair pair = FromAngles(angles);
-    if (brdf.IsKnown(pair)) pairs.push_back(pair);
-    if (pairs.size() < std::min(kBatch, count - samples.size())) continue;
-    brdf.Evaluate(pairs, std::span(values).first(pairs.size()));
+    if (brdf_.IsKnown(pair)) pairs.push_back(pair);
+    if (pairs.size() < std::min(kBatch, missing)) continue;
+    brdf_.Evaluate(pairs, std::span(values).first(pairs.size()));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
-      if (IsUsable(values[n])) samples.push_back({pairs[n], values[n]});
+      if (IsUsable(values[n])) samples->push_back({pairs[n], values[n]});
     }
     pairs.clear();
   }
+}
+
+std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
+                                    std::size_t count, std::uint64_t seed) {
+  std::vector<BrdfSample> samples;
+  SampleStream(brdf, set, sampling, seed).Draw(count, &samples);
   return samples;
 }
 

@@ -17,6 +17,7 @@
 #include "report.h"
 #include "shared_flags.h"
 
+DECLARE_string(init);
 DECLARE_string(terms);
 DEFINE_string(summary, "", "write measures, cost, time and the problem to this JSON file");
 DEFINE_string(trace, "", "write a row for each iteration to this CSV");
@@ -63,7 +64,9 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
   measures["material"] = FLAGS_material;
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
+  measures["samples_used"] = summary.samples;
   measures["energy_stage"] = summary.energy_stage;
+  measures["precision_limited"] = summary.precision_limited;
   measures["seconds"] = summary.seconds;
   measures["seed"] = problem.seed;
   measures["termination"] = NameOf(kTerminations, summary.termination);
@@ -95,6 +98,17 @@ void CheckDifferent(const std::vector<std::string>& outputs) {
   }
 }
 
+// Of the network in a file, which must have the shape and the encoding that the problem has.
+std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape) {
+  const NeuralBrdf network = NeuralBrdf::Read(path);
+  const auto describe = [](const NetworkShape& s) {
+    return StrCat(s.Description(), ", ", NameOf(kEncodings, s.encoding()), " encoding");
+  };
+  const std::string found = describe(network.shape()), wanted = describe(shape);
+  if (found != wanted) Fail(path, ": a network ", found, "; --init needs ", wanted);
+  return network.weights();
+}
+
 int RunFit(const std::string&) {
   RequireFlag("material", FLAGS_material);
   RequireFlag("out", FLAGS_out);
@@ -103,6 +117,10 @@ int RunFit(const std::string&) {
   CheckWritable(FLAGS_out);
   if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
   if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
+  if (!FLAGS_init.empty()) {
+    flags.options.initial_weights = WeightsOf(FLAGS_init, flags.problem.Shape());
+    ValidateFit(flags.problem, flags.options);
+  }
   std::signal(SIGINT, OnInterrupt);
   const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
 
@@ -134,6 +152,9 @@ int RunFit(const std::string&) {
               << NameOf(kTerminations, fit.summary.termination) << " after "
               << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
               << MeasuresText(measures);
+    if (fit.summary.precision_limited) {
+      std::cout << "single precision limited the fit: --precision=double goes further\n";
+    }
   }
   return 0;
 }

@@ -5,8 +5,9 @@
 #include "pbnbrdf/base/text.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
-DEFINE_string(encoding, "merl",
-              "the network's input: cartesian | reciprocal | multiscale | merl (README: Encodings)");
+DEFINE_string(
+    encoding, "merl",
+    "the network's input: cartesian | reciprocal | multiscale | merl (README: Encodings)");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
 DEFINE_string(initialization, "glorot",
@@ -26,16 +27,19 @@ DEFINE_string(loss, "soft_l1",
 DEFINE_double(loss_scale, 0.001, "residual at which the loss turns from square to linear");
 DEFINE_string(sampling, "highlight",
               "training angles: uniform, as NBRDF's | highlight, half of them near the mirror");
-DEFINE_uint64(samples, 10000, "training samples");
+DEFINE_uint64(samples, 60000, "most training samples");
 DEFINE_uint64(first_samples, 1000, "samples to start with; --samples or more: all at once");
 DEFINE_double(growth, 3.0, "factor of samples each time that the cost falls slowly");
 DEFINE_uint64(seed, 1, "of the samples and the initial weights");
 DEFINE_string(precision, "single", "of the network's passes: single | double");
 DEFINE_string(solver, "tiny_lm",
               "tiny_lm | lm, both Levenberg-Marquardt, lm Ceres' own | lbfgs, Ceres' | adam");
-DEFINE_uint64(curvature_samples, 4096, "tiny_lm: samples that J'J is summed over, others each time");
+DEFINE_string(init, "", "start from this fitted network, of the same shape and encoding");
+DEFINE_int32(starts, 1, "start from so many random weights and go on with the best");
+DEFINE_uint64(curvature_samples, 4096,
+              "tiny_lm: samples that J'J is summed over, others each time");
 DEFINE_string(jacobian, "condensed", "condensed | autodiff, the slow reference, always with lm");
-DEFINE_int32(max_iterations, 150, "stop a stage after so many iterations (adam: epochs)");
+DEFINE_int32(max_iterations, 400, "stop a stage after so many iterations (adam: epochs)");
 DEFINE_double(max_seconds, 3600.0, "stop after so many seconds");
 DEFINE_uint64(batch, 512, "adam: samples a step");
 DEFINE_double(learning_rate, 5e-4, "adam: step size");
@@ -93,6 +97,7 @@ FitOptions ParseOptions() {
   FitOptions options;
   options.solver = ParseName(kSolvers, "solver", FLAGS_solver);
   options.jacobian = ParseName(kJacobianMethods, "jacobian", FLAGS_jacobian);
+  options.starts = FLAGS_starts;
   options.curvature_samples = FLAGS_curvature_samples;
   options.max_iterations = FLAGS_max_iterations;
   options.max_seconds = FLAGS_max_seconds;
@@ -113,8 +118,8 @@ std::vector<FlagGroup> ProblemFlags() {
             "energy_theta", "energy_phi", "loss", "loss_scale"}},
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
-           {"solver", "jacobian", "curvature_samples", "max_iterations", "max_seconds", "function_tolerance", "batch",
-            "learning_rate", "energy_angles"}}};
+           {"solver", "jacobian", "init", "starts", "curvature_samples", "max_iterations",
+            "max_seconds", "function_tolerance", "batch", "learning_rate", "energy_angles"}}};
 }
 
 FitFlags ParseFitFlags() {

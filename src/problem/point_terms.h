@@ -104,7 +104,8 @@ class LogTerm {
  public:
   // Residuals and slopes d r_c / d z_c of a batch, by feature.
   struct Batch {
-    AlignedVector<double> residuals = AlignedVector<double>(NetworkShape::kChannels * kernels::kBatch);
+    AlignedVector<double> residuals =
+        AlignedVector<double>(NetworkShape::kChannels * kernels::kBatch);
     AlignedVector<double> slopes = AlignedVector<double>(NetworkShape::kChannels * kernels::kBatch);
   };
 
@@ -113,12 +114,14 @@ class LogTerm {
       : weight_(weight / static_cast<double>(samples.size())),
         absolute_(problem.loss == Loss::kAbsolute),
         loss_(MakeLoss(problem.loss, problem.loss_scale)) {
-    const std::size_t padded = (samples.size() + kernels::kBatch - 1) / kernels::kBatch * kernels::kBatch;
+    const std::size_t padded =
+        (samples.size() + kernels::kBatch - 1) / kernels::kBatch * kernels::kBatch;
     cos_i_.resize(padded);
     targets_.resize(NetworkShape::kChannels * padded);
     for (std::size_t n = 0; n < samples.size(); ++n) {
       cos_i_[n] = CosI(samples[n].pair);
-      double* target = &targets_[n / kernels::kBatch * NetworkShape::kChannels * kernels::kBatch + n % kernels::kBatch];
+      double* target = &targets_[n / kernels::kBatch * NetworkShape::kChannels * kernels::kBatch +
+                                 n % kernels::kBatch];
       for (int c = 0; c < NetworkShape::kChannels; ++c) {
         target[c * kernels::kBatch] = std::log1p(samples[n].value[c] * cos_i_[n]);
       }
@@ -130,8 +133,9 @@ class LogTerm {
   // z: the outputs at batch b, by feature.
   template <typename T>
   void Evaluate(std::size_t b, const T* z, Batch* batch) const {
-    kernels::LogResiduals(z, &targets_[b * NetworkShape::kChannels * kernels::kBatch], &cos_i_[b * kernels::kBatch],
-                          batch->residuals.data(), batch->slopes.data());
+    kernels::LogResiduals(z, &targets_[b * NetworkShape::kChannels * kernels::kBatch],
+                          &cos_i_[b * kernels::kBatch], batch->residuals.data(),
+                          batch->slopes.data());
   }
 
   double Cost(const Batch& batch, int n) const {
@@ -144,13 +148,14 @@ class LogTerm {
   template <typename SetRow>
   double Linearize(const Batch& batch, int n, SetRow set) const {
     if (weight_ == 0.0) return 0.0;
-    const RobustWeight robust = absolute_ ? RobustWeight{AbsoluteSum(batch, n), 1.0}
-                                          : Robust(batch, n);
+    const RobustWeight robust =
+        absolute_ ? RobustWeight{AbsoluteSum(batch, n), 1.0} : Robust(batch, n);
     for (int c = 0; c < NetworkShape::kChannels; ++c) {
       const double r = batch.residuals[c * kernels::kBatch + n];
       double gradient[NetworkShape::kChannels] = {};
       gradient[c] = robust.row_scale * batch.slopes[c * kernels::kBatch + n];
-      set(c, absolute_ ? weight_ / NetworkShape::kChannels * Sign(r) : robust.row_scale * r, gradient);
+      set(c, absolute_ ? weight_ / NetworkShape::kChannels * Sign(r) : robust.row_scale * r,
+          gradient);
     }
     return robust.cost;
   }
@@ -158,7 +163,8 @@ class LogTerm {
  private:
   double AbsoluteSum(const Batch& batch, int n) const {
     double sum = 0.0;
-    for (int c = 0; c < NetworkShape::kChannels; ++c) sum += std::abs(batch.residuals[c * kernels::kBatch + n]);
+    for (int c = 0; c < NetworkShape::kChannels; ++c)
+      sum += std::abs(batch.residuals[c * kernels::kBatch + n]);
     return weight_ / NetworkShape::kChannels * sum;
   }
 

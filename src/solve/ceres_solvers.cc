@@ -92,6 +92,7 @@ class CostAndGradient final : public ceres::FirstOrderFunction {
 StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options) {
   IterationCallback callback(options);
   auto ceres_options = CommonOptions<ceres::Solver::Options>(options, &callback);
+  ceres_options.initial_trust_region_radius = kFirstTrustRegionRadius;
   ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   ceres_options.use_nonmonotonic_steps = true;  // halves the iterations; the best weights are kept
   ceres_options.max_num_consecutive_invalid_steps = kMostInvalidSteps;

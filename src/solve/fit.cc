@@ -2,9 +2,9 @@
 
 #include <tbb/task_arena.h>
 
-#include <chrono>
 #include <cmath>
 
+#include "pace.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/solve/adam.h"
@@ -14,7 +14,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::size_t kHeldOutSamples = 4096;
+constexpr std::size_t kHeldOutSamples = 32768;
 constexpr std::uint64_t kHeldOutSeed = 1;
 constexpr int kMostSecondOrderWeights = 10000;
 
@@ -24,59 +24,29 @@ constexpr std::size_t kValidationSamples = 4096;
 constexpr std::uint64_t kValidationSeed = 0x9e3779b97f4a7c15;
 constexpr double kOverfit = 1.1;
 
+constexpr double kRoundingShare = 0.01;
+constexpr int kStartIterations = 12;
+constexpr std::uint64_t kStartSeed = 0xbf58476d1ce4e5b9;
+
 // When a stage is slow, more samples promise more than more iterations; idle, nothing does.
-constexpr std::size_t kSlowIterations = 6, kIdleIterations = 30;
-constexpr double kSlowFall = 0.3, kIdleFall = 0.03;
+constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
+constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
+constexpr std::size_t kCurvatureGrowth = 4;
 constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
-
-// A clock that can be stopped.
-class Stopwatch {
- public:
-  double Seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  // Runs what isn't to be counted.
-  template <typename Function>
-  auto Exclude(Function function) {
-    const Clock::time_point before = Clock::now();
-    auto result = function();
-    start_ += Clock::now() - before;
-    return result;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
-
-// Whether a number that is watched has all but ceased to fall.
-class Slowdown {
- public:
-  // Slow: its least value has fallen by less than a part of `fall` over `iterations`.
-  Slowdown(std::size_t iterations, double fall) : iterations_(iterations), fall_(fall) {}
-
-  bool Observe(double value) {
-    least_.push_back(least_.empty() ? value : std::min(value, least_.back()));
-    if (least_.size() <= iterations_) return false;
-    return least_.back() > (1.0 - fall_) * least_[least_.size() - 1 - iterations_];
-  }
-
- private:
-  std::size_t iterations_;
-  double fall_;
-  std::vector<double> least_;  // so far, at each iteration
-};
 
 class Fitter {
  public:
   Fitter(const Brdf& material, const FitProblem& problem, const FitOptions& options)
       : options_(options),
-        samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling, problem.samples,
-                             problem.seed)),
+        most_samples_(problem.samples),
+        stream_(material, SampleSet::kTraining, problem.sampling, problem.seed),
         validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling,
                                         kValidationSamples, problem.seed + kValidationSeed)),
-        count_(std::min(problem.first_samples, samples_.size())),
-        weights_(InitialWeights(problem.Shape(), samples_, problem.seed, problem.initialization)),
-        iterations_left_(options.max_iterations) {
-    if (options.solver == Solver::kAdam) count_ = samples_.size();  // it draws its own few
+        curvature_samples_(options.curvature_samples) {
+    const bool grows = options.solver != Solver::kAdam;  // which draws its own few
+    stream_.Draw(grows ? std::min(problem.first_samples, most_samples_) : most_samples_, &samples_);
+    weights_ = options.initial_weights;
+    if (weights_.empty()) weights_ = RandomWeights(problem, 0);
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
@@ -84,14 +54,39 @@ class Fitter {
     });
   }
 
+  // Leaves the best of several short runs.
+  void RunStarts(const FitProblem& problem) {
+    std::vector<double> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int start = 0; start < options_.starts && MayContinue(); ++start) {
+      weights_ = RandomWeights(problem, start);
+      StageOptions stage = MakeStage();
+      stage.max_iterations = std::min(kStartIterations, options_.max_iterations);
+      stage.on_iteration = [&](int iteration, double cost) { return Report(iteration, cost); };
+      const double cost = Run(problem, stage);
+      if (!(cost < least)) continue;
+      least = cost;
+      best = weights_;
+    }
+    weights_ = best;
+  }
+
   // Minimises from where the last stage ended, on few samples at first and then on more and more.
   void RunStages(const FitProblem& problem) {
     iterations_left_ = options_.max_iterations;
     validation_ = MakeObjective(problem, validation_samples_);
-    while (RunStage(problem) && iterations_left_ > 0 && MayContinue()) {
-      const double grown = std::ceil(problem.growth * static_cast<double>(count_));
-      count_ = grown < static_cast<double>(samples_.size()) ? static_cast<std::size_t>(grown)
-                                                            : samples_.size();
+    while (true) {
+      const End end = RunStage(problem);
+      if (iterations_left_ == 0 || !MayContinue()) return;
+      if (end == End::kWantsSamples) {
+        const double grown = std::ceil(problem.growth * static_cast<double>(samples_.size()));
+        const double most = static_cast<double>(most_samples_);
+        stream_.Draw(static_cast<std::size_t>(std::min(grown, most)) - samples_.size(), &samples_);
+      } else if (end == End::kWantsCurvature) {
+        curvature_samples_ *= kCurvatureGrowth;
+      } else {
+        return;
+      }
     }
   }
 
@@ -103,44 +98,83 @@ class Fitter {
 
   const std::vector<double>& weights() const { return weights_; }
 
-  FitSummary Finish() {
+  FitSummary Finish(const FitProblem& problem) {
     summary_.seconds = stopwatch_.Seconds();
-    summary_.samples = count_;
+    summary_.samples = samples_.size();
+    summary_.precision_limited =
+        problem.precision == Precision::kSingle && !AgreesInDouble(problem);
     return summary_;
   }
 
  private:
-  // Whether it ended for want of samples.
-  bool RunStage(const FitProblem& problem) {
-    enum class End { kNone, kInterrupted, kWantsSamples, kNoGain } end = End::kNone;
+  enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };
+
+  // What it ended for; kNone: for the solver's own reasons.
+  End RunStage(const FitProblem& problem) {
+    End end = End::kNone;
     const std::size_t pace = options_.solver == Solver::kLbfgs ? kLbfgsPace : 1;
     Slowdown slow(pace * kSlowIterations, kSlowFall), idle(pace * kIdleIterations, kIdleFall);
-    StageOptions stage;
+    StageOptions stage = MakeStage();
     stage.max_iterations = iterations_left_;
-    stage.curvature_samples = options_.curvature_samples;
-    stage.function_tolerance = options_.function_tolerance;
-    stage.seconds_left = [&] { return options_.max_seconds - stopwatch_.Seconds(); };
     stage.on_iteration = [&](int iteration, double cost) {
-      if (options_.on_iteration && !Report(iteration, cost)) end = End::kInterrupted;
+      if (!Report(iteration, cost)) end = End::kInterrupted;
       if (options_.solver == Solver::kAdam || end != End::kNone) return end == End::kNone;
       const double validation = validation_->Cost(weights_.data());
-      const bool wants_samples = count_ < samples_.size() && validation > kOverfit * cost;
-      if (slow.Observe(cost) && wants_samples) end = End::kWantsSamples;
-      if (idle.Observe(validation)) end = wants_samples ? End::kWantsSamples : End::kNoGain;
+      const bool is_slow = slow.Observe(cost), is_idle = idle.Observe(validation);
+      if (is_slow || is_idle) end = Next(validation / cost, is_idle);
       return end == End::kNone;
     };
-    const StageResult result = Minimize(problem, std::span(samples_).first(count_), stage);
+    Run(problem, stage);
+    if (summary_.termination == Termination::kConverged) return Next(/*overfit=*/1.0, /*is_idle=*/true);
+    if (end != End::kNone && end != End::kInterrupted) {
+      summary_.termination = Termination::kConverged;
+      summary_.message = "neither more samples nor more iterations help";
+    }
+    return end;
+  }
+
+  // Whether rounding plays no part in the cost.
+  bool AgreesInDouble(FitProblem problem) const {
+    const double single = MakeObjective(problem, validation_samples_)->Cost(weights_.data());
+    problem.precision = Precision::kDouble;
+    const double exact = MakeObjective(problem, validation_samples_)->Cost(weights_.data());
+    return std::abs(single - exact) <= kRoundingShare * exact;
+  }
+
+  StageOptions MakeStage() const {
+    StageOptions stage;
+    stage.curvature_samples = curvature_samples_;
+    stage.function_tolerance = options_.function_tolerance;
+    stage.seconds_left = [this] { return options_.max_seconds - stopwatch_.Seconds(); };
+    return stage;
+  }
+
+  // Returns the cost.
+  double Run(const FitProblem& problem, const StageOptions& stage) {
+    const StageResult result = Minimize(problem, samples_, stage);
     summary_.final_cost = result.cost;
     summary_.iterations += result.iterations;
     iterations_left_ -= result.iterations;
     summary_.termination = result.termination;
     summary_.message = result.message;
-    if (end == End::kNoGain || end == End::kWantsSamples) {
-      summary_.termination = Termination::kConverged;
-      summary_.message = "neither more samples nor more iterations help";
+    return result.cost;
+  }
+
+  // Of the start-th start.
+  std::vector<double> RandomWeights(const FitProblem& problem, int start) const {
+    return InitialWeights(problem.Shape(), samples_, problem.seed + start * kStartSeed,
+                          problem.initialization);
+  }
+
+  // What a slow stage wants; kNone: to go on.
+  End Next(double overfit, bool is_idle) const {
+    if (samples_.size() < most_samples_ && (is_idle || overfit >= kOverfit)) {
+      return End::kWantsSamples;
     }
-    if (result.termination == Termination::kConverged) return count_ < samples_.size();
-    return end == End::kWantsSamples;
+    if (!is_idle) return End::kNone;
+    const bool in_parts =
+        options_.solver == Solver::kTinyLm && curvature_samples_ < samples_.size();
+    return in_parts ? End::kWantsCurvature : End::kNoGain;
   }
 
   StageResult Minimize(const FitProblem& problem, std::span<const BrdfSample> samples,
@@ -167,8 +201,9 @@ class Fitter {
     return MinimizeCeresLm(&ceres_problem, stage);
   }
 
-  // Tells the user, who may stop the fit.
+  // Tells the user, if there is one, who may stop the fit.
   bool Report(int iteration, double cost) {
+    if (!options_.on_iteration) return true;
     FitProgress progress;
     progress.iteration = summary_.iterations + iteration;
     progress.cost = cost;
@@ -181,12 +216,14 @@ class Fitter {
 
   Stopwatch stopwatch_;
   const FitOptions& options_;
+  std::size_t most_samples_;
+  SampleStream stream_;
   std::vector<BrdfSample> samples_, validation_samples_;
-  std::size_t count_;  // of the samples in use
+  std::size_t curvature_samples_;
   std::vector<double> weights_;
   std::unique_ptr<Objective> validation_, heldout_;
   FitSummary summary_;
-  int iterations_left_;
+  int iterations_left_ = 0;
 };
 
 // The energy term waits until the rest is fitted: from random weights its square outweighs all else
@@ -195,15 +232,16 @@ Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& opt
   Fitter fitter(material, problem, options);
   if (options.solver == Solver::kAdam) {  // all terms from the start, as published
     fitter.RunStages(problem);
-    return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish()};
+    return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish(problem)};
   }
   FitProblem without_energy = problem;
   without_energy.energy_weight = 0.0;
+  if (options.starts > 1) fitter.RunStarts(without_energy);
   fitter.RunStages(without_energy);
   const bool gains_energy = problem.energy_weight > 0.0 &&
                             EnergyStrata<double>(problem).Cost(fitter.weights().data()) > 0.0;
   if (gains_energy && fitter.MayContinue()) fitter.RunStages(problem);
-  FitSummary summary = fitter.Finish();
+  FitSummary summary = fitter.Finish(without_energy);
   summary.energy_stage = gains_energy;
   return {NeuralBrdf(problem.Shape(), fitter.weights()), summary};
 }
@@ -225,6 +263,16 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
   if (second_order && weights > kMostSecondOrderWeights) {
     Fail("hidden: makes ", weights, " weights; a second-order solver takes at most ",
          kMostSecondOrderWeights, ", as its memory grows with their square");
+  }
+  if (options.starts < 1) Fail("starts = ", options.starts, "; must be >= 1");
+  if (options.starts > 1 && options.solver == Solver::kAdam) Fail("starts: adam takes one only");
+  if (options.starts > 1 && !options.initial_weights.empty()) {
+    Fail("starts: there is but one from given weights");
+  }
+  if (!options.initial_weights.empty() &&
+      options.initial_weights.size() != static_cast<std::size_t>(problem.Shape().num_weights())) {
+    Fail("initial_weights: ", options.initial_weights.size(), " numbers, a ",
+         problem.Shape().Description(), " network has ", problem.Shape().num_weights());
   }
   if (options.curvature_samples < 1) Fail("curvature_samples = 0; must be >= 1");
   if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");

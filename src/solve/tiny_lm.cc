@@ -10,9 +10,10 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kFirstRadius = 1e4, kSmallestRadius = 1e-32, kLargestRadius = 1e16;
+constexpr double kSmallestRadius = 1e-32, kLargestRadius = 1e16;
 constexpr double kLeastDecrease = 1e-3;  // of the predicted one, for a step to be taken
 constexpr int kMostRisingSteps = 5;
+constexpr double kMostRise = 4.0;  // of the cost over the least one so far
 // The damping is relative to the diagonal of J'J in weights scaled by 1 / (1 + |J_i|), and there at
 // least this.
 constexpr double kLeastDiagonal = 1e-6;
@@ -26,8 +27,9 @@ class StepJudge {
   double least() const { return least_; }
 
   // The decrease of the cost over the predicted one, the better of: of this step, of all since the
-  // reference.
+  // reference. -1 where the cost isn't finite or too high for a way over a ridge.
   double Quality(double cost, double predicted) const {
+    if (!(cost <= kMostRise * least_)) return -1.0;
     return std::max((current_ - cost) / predicted,
                     (reference_ - cost) / (since_reference_ + predicted));
   }
@@ -81,7 +83,7 @@ class TinyLm {
       double predicted = 0.0;
       const double cost = ComputeStep(&predicted) ? objective_->Cost(trial_.data())
                                                   : std::numeric_limits<double>::infinity();
-      const double quality = std::isfinite(cost) ? judge.Quality(cost, predicted) : -1.0;
+      const double quality = judge.Quality(cost, predicted);
       const double change = std::abs(at_.cost - cost);
       if (!(quality > kLeastDecrease)) {
         ShrinkRadius();
@@ -111,7 +113,8 @@ class TinyLm {
   // J'J from another part of the samples each time.
   bool Linearize(const std::vector<double>& x, Linearization* at) {
     const std::size_t parts = objective_->num_samples() / options_.curvature_samples;
-    return objective_->Linearize(x.data(), {linearizations_++, std::max<std::size_t>(parts, 1)}, at);
+    return objective_->Linearize(x.data(), {linearizations_++, std::max<std::size_t>(parts, 1)},
+                                 at);
   }
 
   bool MayContinue(double cost) {
@@ -203,7 +206,7 @@ class TinyLm {
   Linearization at_, next_;
   Cholesky cholesky_;
   std::size_t linearizations_ = 0;
-  double radius_ = kFirstRadius, shrink_ = 2.0;
+  double radius_ = kFirstTrustRegionRadius, shrink_ = 2.0;
   StageResult result_;
 };
 

@@ -30,6 +30,18 @@ std::set<Key> ThetaDs(const std::vector<BrdfSample>& samples) {
   return keys;
 }
 
+TEST(Sampling, AStreamGivesTheSameSamplesInAnyPortions) {
+  std::vector<BrdfSample> samples;
+  SampleStream stream(kGrey, SampleSet::kTraining, Sampling::kHighlight, 5);
+  for (std::size_t count : {1, 0, 1500, 499, 1000}) stream.Draw(count, &samples);
+  const auto all = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 3000, 5);
+  ASSERT_EQ(samples.size(), all.size());
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    ASSERT_EQ(samples[n].pair.wi.x, all[n].pair.wi.x) << n;
+    ASSERT_EQ(samples[n].pair.wo.z, all[n].pair.wo.z) << n;
+  }
+}
+
 TEST(Sampling, SameSeedSameSamples) {
   const auto a = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 5);
   const auto b = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 5);

@@ -104,6 +104,7 @@ TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError(fit + " --loss=absolute", 2, "--loss: absolute isn't a sum of squares");
   ExpectError(fit + " --solver=adam --energy_angles=0", 2,
               "--energy_angles = 0; must be 1 to 1024");
+  ExpectError(fit + " --starts=0", 2, "--starts = 0; must be >= 1");
   ExpectError(fit + " --threads=-1", 2, "--threads = -1; must be >= 0");
   ExpectError(fit + " gold.binary", 2, "'gold.binary' is not a flag");
   ExpectError("info", 2, "a file or another source is missing");
@@ -163,8 +164,22 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
             NeuralBrdf::Read(Path("b.safetensors")).weights());
 
   const Result info = Run("info " + Path("a.safetensors"));
-  EXPECT_THAT(info.out, HasSubstr("neural BRDF 6-5-3 tanh, multiscale encoding"));
+  EXPECT_THAT(info.out, HasSubstr("neural BRDF 6-5-3 tanh, merl encoding"));
   EXPECT_THAT(info.out, HasSubstr("seed: 7"));
+}
+
+TEST_F(Cli, AFitGoesOnFromAnother) {
+  const std::string fit = "fit --quiet --material=builtin:satin-gold" + std::string(kQuick);
+  ASSERT_EQ(Run(fit + "--out=" + Path("a.safetensors")).status, 0);
+  const std::string from_a = " --init=" + Path("a.safetensors");
+  ASSERT_EQ(Run(fit + "--max_iterations=0 --out=" + Path("b.safetensors") + from_a).status, 0);
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights(),
+            NeuralBrdf::Read(Path("b.safetensors")).weights());
+  ExpectError(fit + "--encoding=reciprocal --out=" + Path("b.safetensors") + from_a, 1,
+              "a.safetensors: a network 6-5-3 tanh, merl encoding; --init needs 6-5-3 tanh, "
+              "reciprocal encoding");
+  ExpectError(fit + "--out=" + Path("b.safetensors") + " --init=" + Path("none.safetensors"), 1,
+              "none.safetensors: no such file");
 }
 
 TEST_F(Cli, TheReferencePathFitsToo) {

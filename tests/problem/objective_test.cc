@@ -310,5 +310,40 @@ TEST(Objective, MeanAbsLogErrorIsThatOfEquation6) {
               sum / (3.0 * static_cast<double>(samples.size())), 1e-6);
 }
 
+TEST(Objective, CurvatureOfPartsAddsUpToThatOfAll) {
+  FitProblem problem = SmallProblem();
+  problem.samples = 1000;  // 8 batches, the last one not full
+  problem.precision = Precision::kDouble;
+  const auto objective = MakeObjective(problem, Samples(problem));
+  const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/11);
+  Linearization all;
+  ASSERT_TRUE(objective->Linearize(weights.data(), &all));
+  const double samples_of_part[] = {3 * 128.0, 2 * 128.0 + 104.0, 2 * 128.0};
+  std::vector<double> sum(all.hessian.size());
+  for (std::size_t part = 0; part < 3; ++part) {
+    Linearization at;
+    // Parts come round again.
+    ASSERT_TRUE(objective->Linearize(weights.data(), {.index = part + 30, .count = 3}, &at));
+    EXPECT_NEAR(at.cost, all.cost, 1e-12 * all.cost);
+    for (std::size_t i = 0; i < all.gradient.size(); ++i) {
+      EXPECT_NEAR(at.gradient[i], all.gradient[i], 1e-12);
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += samples_of_part[part] / 1000.0 * at.hessian[i];
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], all.hessian[i], 1e-12);
+}
+
+TEST(Objective, MorePartsThanBatchesAreOneBatchEach) {
+  const FitProblem problem = SmallProblem();
+  const auto objective = MakeObjective(problem, Samples(problem));
+  const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/11);
+  Linearization two, many;
+  ASSERT_TRUE(objective->Linearize(weights.data(), {.index = 1, .count = 2}, &two));
+  ASSERT_TRUE(objective->Linearize(weights.data(), {.index = 1, .count = 100}, &many));
+  EXPECT_EQ(two.hessian, many.hessian);
+}
+
 }  // namespace
 }  // namespace pbnbrdf

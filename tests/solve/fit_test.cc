@@ -53,6 +53,7 @@ TEST(FitBrdf, FindsANetworkThatExists) {
   for (int c = 1; c <= 3; ++c) weights[shape.offset(1) + 5 * c - 1] = 1.5;  // positive everywhere
   const NeuralBrdf truth(shape, weights);
   FitProblem problem = SmallProblem();
+  problem.encoding = shape.encoding();
   problem.precision = Precision::kDouble;
   FitOptions options;
   options.max_iterations = 200;
@@ -329,6 +330,60 @@ TEST(FitBrdf, AdamsToleranceIsOfTheMeanOverFiveEpochs) {
   EXPECT_THAT(fit.summary.message, HasSubstr("mean cost of the last 5 epochs"));
 }
 
+TEST(FitBrdf, TheBestStartGoesOn) {
+  const FitProblem problem = SmallProblem();
+  double least = std::numeric_limits<double>::infinity();
+  FitOptions options;
+  options.starts = 4;
+  options.max_iterations = 12;  // of each start, and none is left after them
+  options.on_iteration = [&](const FitProgress& progress) {
+    least = std::min(least, progress.cost);
+    return true;
+  };
+  const Fit fit = FitBrdf(*MakeBuiltin("satin-gold"), problem, options);
+  EXPECT_LE(fit.summary.final_cost, least);
+  EXPECT_GT(fit.summary.iterations, 4 * 11);
+}
+
+TEST(FitBrdf, GoesOnFromGivenWeights) {
+  const auto gold = MakeBuiltin("satin-gold");
+  FitOptions options;
+  options.max_iterations = 20;
+  const Fit first = FitBrdf(*gold, SmallProblem(), options);
+  options.initial_weights = first.network.weights();
+  options.max_iterations = 0;
+  EXPECT_EQ(FitBrdf(*gold, SmallProblem(), options).network.weights(), first.network.weights());
+  options.max_iterations = 20;
+  const Fit second = FitBrdf(*gold, SmallProblem(), options);
+  EXPECT_LT(second.summary.final_cost, first.summary.final_cost);
+}
+
+TEST(FitBrdf, SaysWhenSinglePrecisionLimitsIt) {
+  // A network of this size comes as near to gold as it can, which is not near; to itself it could
+  // come without end.
+  FitProblem problem = SmallProblem();
+  FitOptions options;
+  options.max_iterations = 100;
+  const Fit gold = FitBrdf(*MakeBuiltin("satin-gold"), problem, options);
+  EXPECT_FALSE(gold.summary.precision_limited);
+  options.initial_weights = gold.network.weights();
+  EXPECT_TRUE(FitBrdf(gold.network, problem, options).summary.precision_limited);
+  problem.precision = Precision::kDouble;
+  EXPECT_FALSE(FitBrdf(gold.network, problem, options).summary.precision_limited);
+}
+
+TEST(FitBrdf, CurvatureOfAPartOfTheSamplesServes) {
+  FitProblem problem = SmallProblem();
+  problem.samples = problem.first_samples = 4000;
+  FitOptions options;
+  options.max_iterations = 60;
+  const auto gold = MakeBuiltin("satin-gold");
+  const Fit all = FitBrdf(*gold, problem, options);
+  options.curvature_samples = 1000;
+  const Fit part = FitBrdf(*gold, problem, options);
+  EXPECT_LT(MeanAbsDifference(*gold, part.network), 3.0 * MeanAbsDifference(*gold, all.network));
+}
+
 TEST(FitBrdf, BadOptionsAreNamed) {
   const auto error = [](auto change) {
     FitOptions options;
@@ -339,6 +394,11 @@ TEST(FitBrdf, BadOptionsAreNamed) {
               HasSubstr("max_iterations = -1"));
   EXPECT_THAT(error([](FitOptions* o) { o->max_seconds = 0; }), HasSubstr("max_seconds = 0"));
   EXPECT_THAT(error([](FitOptions* o) { o->threads = -2; }), HasSubstr("threads = -2"));
+  EXPECT_THAT(error([](FitOptions* o) { o->starts = 0; }), HasSubstr("starts = 0"));
+  EXPECT_THAT(error([](FitOptions* o) { o->curvature_samples = 0; }),
+              HasSubstr("curvature_samples = 0"));
+  EXPECT_THAT(error([](FitOptions* o) { o->initial_weights = {1.0, 2.0}; }),
+              HasSubstr("initial_weights: 2 numbers, a 6-6-3 tanh network has 63"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "pbnbrdf/base/names.h"
@@ -26,8 +27,26 @@ struct BrdfSample {
   Rgb value;  // f in 1/sr, >= 0
 };
 
-// `count` samples at which `brdf` is known. The same arguments give the same samples. Throws Error
-// if next to no angles are known (fewer than 1 in 10,000).
+// Samples at which a Brdf is known, one after the other: the same arguments give the same ones,
+// however many at a time.
+class SampleStream {
+ public:
+  // brdf must outlive this.
+  SampleStream(const Brdf& brdf, SampleSet set, Sampling sampling, std::uint64_t seed)
+      : brdf_(brdf), set_(set), sampling_(sampling), random_(seed) {}
+
+  // Appends the next `count` samples. Throws Error if next to no angles are known (fewer than 1 in
+  // 10,000).
+  void Draw(std::size_t count, std::vector<BrdfSample>* samples);
+
+ private:
+  const Brdf& brdf_;
+  SampleSet set_;
+  Sampling sampling_;
+  std::mt19937_64 random_;
+};
+
+// The first `count` samples of a SampleStream.
 std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
                                     std::size_t count, std::uint64_t seed);
 

@@ -75,7 +75,7 @@ struct FitProblem {
   // The training samples. A fit starts on the first few of them and takes `growth` times as many
   // each time that the cost falls slowly, up to all.
   Sampling sampling = Sampling::kHighlight;
-  std::size_t samples = 10000;
+  std::size_t samples = 60000;
   std::size_t first_samples = 1000;
   double growth = 3.0;     // > 1
   std::uint64_t seed = 1;  // of the samples and of the initial weights

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
@@ -39,9 +40,13 @@ inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
 struct FitOptions {
   Solver solver = Solver::kTinyLm;
   JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
+  // Where to start from: problem.Shape().num_weights() numbers, or none for random ones.
+  std::vector<double> initial_weights;
+  // Short runs from different random weights, of which the best one goes on; >= 1, Adam: 1.
+  int starts = 1;
   // tiny_lm sums J'J over about so many of the samples, others each time (linearization.h); >= 1.
   std::size_t curvature_samples = 4096;
-  int max_iterations = 150;     // >= 0, without the energy term, and again with it; Adam: epochs
+  int max_iterations = 400;     // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;  // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
                                      // with Adam is that of a mean (adam.h)
@@ -56,7 +61,10 @@ struct FitSummary {
   int iterations = 0;         // of all stages
   std::size_t samples = 0;    // that the fit had grown to
   bool energy_stage = false;  // whether an albedo above 1 called for a stage with the energy term
-  double seconds = 0.0;       // with sampling the material, without reading it or evaluating errors
+  // Of single precision only: rounding changes the final cost by more than a hundredth, so that
+  // double precision would have gone further.
+  bool precision_limited = false;
+  double seconds = 0.0;  // with sampling the material, without reading it or evaluating errors
   Termination termination = Termination::kConverged;
   std::string message;  // the solver's own words
 };

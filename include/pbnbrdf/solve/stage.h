@@ -19,6 +19,9 @@ inline constexpr NameTable<Termination, 4> kTerminations = {
      {"max_seconds", Termination::kMaxSeconds},
      {"interrupted", Termination::kInterrupted}}};
 
+// Of both Levenberg-Marquardt solvers. From random weights larger ones are refused several times over.
+inline constexpr double kFirstTrustRegionRadius = 10.0;
+
 struct StageOptions {
   int max_iterations = 0;
   std::size_t curvature_samples = std::numeric_limits<std::size_t>::max();  // fit.h
