@@ -2,7 +2,11 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstring>
+#include <iterator>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -13,6 +17,8 @@
 
 namespace pbnbrdf {
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "HDF5 files are little-endian");
 
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
@@ -63,6 +69,55 @@ std::string Reason() {
 
 [[noreturn]] void FailDamaged(const std::string& place) {
   Fail(place, ": truncated or damaged HDF5 file (", Reason(), "); copy it again");
+}
+
+std::uint64_t LoadUint64(std::string_view bytes, std::size_t at) {
+  std::uint64_t value;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+// Whether the local heap at `heap` has a free list that runs in a circle: "HEAP", 4 bytes, then the
+// data segment's size, the offset of the first free block in it, and its address. A free block
+// begins with the offset of the next, 1 at the end, and its own size.
+bool FreeListIsCircular(std::string_view bytes, std::size_t heap) {
+  constexpr std::uint64_t kEnd = 1, kHeader = 32, kBlock = 16;
+  if (bytes.size() - heap < kHeader) return false;
+  const std::uint64_t segment = LoadUint64(bytes, heap + 24);
+  if (segment > bytes.size()) return false;
+  const std::uint64_t size = std::min(LoadUint64(bytes, heap + 8), bytes.size() - segment);
+  std::uint64_t block = LoadUint64(bytes, heap + 16);
+  for (std::uint64_t steps = 0; block != kEnd; ++steps) {
+    if (size < kBlock || block > size - kBlock) return false;  // HDF5 finds this by itself
+    if (steps > size / kBlock) return true;
+    block = LoadUint64(bytes, segment + block);
+  }
+  return false;
+}
+
+// Throws Error if HDF5 would follow a circle until memory runs out, as versions to 1.10 do (the
+// heaps hold groups' names).
+void CheckHeaps(const std::string& path, std::string_view bytes) {
+  constexpr std::string_view kHeap = "HEAP";
+  for (std::size_t at = bytes.find(kHeap); at != bytes.npos; at = bytes.find(kHeap, at + 1)) {
+    if (FreeListIsCircular(bytes, at)) {
+      Fail(path, ": damaged HDF5 file (the heap at byte ", at, " runs in a circle); copy it again");
+    }
+  }
+}
+
+// Throws Error unless the file begins like one of HDF5 with addresses and lengths of 8 bytes, the
+// only ones that Keras writes and CheckHeaps looks through.
+void CheckSuperblock(const std::string& path, std::string_view bytes) {
+  constexpr std::size_t kSizesAt[] = {13, 13, 9, 9};  // by the superblock's version
+  if (!bytes.starts_with(kSignature)) {
+    Fail(path, ": not an HDF5 file; expected a network that Keras saved");
+  }
+  const std::size_t version = bytes.size() < 16 ? ~0u : static_cast<unsigned char>(bytes[8]);
+  if (version >= std::size(kSizesAt) || bytes[kSizesAt[version]] != 8 ||
+      bytes[kSizesAt[version] + 1] != 8) {
+    Fail(path, ": truncated or damaged HDF5 file (its first bytes); copy it again");
+  }
 }
 
 // Access to `bytes` as a file, for H5Fopen: it then reads nothing from disk.
@@ -154,12 +209,13 @@ Tensor ReadDataset(const std::string& place, const Handle& group, const std::str
 
 std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
   const std::string bytes = ReadFile(path, kLargestWeightFile);
+  CheckSuperblock(path, bytes);
+  CheckHeaps(path, bytes);
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
+  // Otherwise HDF5 may say at the end of the program that it couldn't let go of a damaged file.
+  H5dont_atexit();
   const QuietHdf5 quiet;
-  if (!bytes.starts_with(kSignature)) {
-    Fail(path, ": not an HDF5 file; expected a network that Keras saved");
-  }
   const Handle access = ImageAccess(bytes);
   // HDF5 wants a name that no file has: there is none below a regular file.
   const std::string image = path + "/image";
