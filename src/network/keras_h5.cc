@@ -20,6 +20,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "HDF5 files are little-endian");
 
+constexpr std::uint64_t kFreeBlock = 16;  // bytes of a local heap's smallest free block
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
 // While it lives, HDF5 doesn't print its errors.
@@ -79,17 +80,18 @@ std::uint64_t LoadUint64(std::string_view bytes, std::size_t at) {
 
 // Whether the local heap at `heap` has a free list that runs in a circle: "HEAP", 4 bytes, then the
 // data segment's size, the offset of the first free block in it, and its address. A free block
-// begins with the offset of the next, 1 at the end, and its own size.
-bool FreeListIsCircular(std::string_view bytes, std::size_t heap) {
-  constexpr std::uint64_t kEnd = 1, kHeader = 32, kBlock = 16;
+// begins with the offset of the next, 1 at the end, and its own size. Counts down *blocks_left.
+bool FreeListIsCircular(std::string_view bytes, std::size_t heap, std::uint64_t* blocks_left) {
+  constexpr std::uint64_t kEnd = 1, kHeader = 32;
   if (bytes.size() - heap < kHeader) return false;
   const std::uint64_t segment = LoadUint64(bytes, heap + 24);
   if (segment > bytes.size()) return false;
   const std::uint64_t size = std::min(LoadUint64(bytes, heap + 8), bytes.size() - segment);
   std::uint64_t block = LoadUint64(bytes, heap + 16);
-  for (std::uint64_t steps = 0; block != kEnd; ++steps) {
-    if (size < kBlock || block > size - kBlock) return false;  // HDF5 finds this by itself
-    if (steps > size / kBlock) return true;
+  while (block != kEnd) {
+    if (size < kFreeBlock || block > size - kFreeBlock) return false;  // HDF5 sees this by itself
+    if (*blocks_left == 0) return true;
+    --*blocks_left;
     block = LoadUint64(bytes, segment + block);
   }
   return false;
@@ -99,8 +101,9 @@ bool FreeListIsCircular(std::string_view bytes, std::size_t heap) {
 // heaps hold groups' names).
 void CheckHeaps(const std::string& path, std::string_view bytes) {
   constexpr std::string_view kHeap = "HEAP";
+  std::uint64_t blocks_left = bytes.size() / kFreeBlock;  // all heaps' together fit into the file
   for (std::size_t at = bytes.find(kHeap); at != bytes.npos; at = bytes.find(kHeap, at + 1)) {
-    if (FreeListIsCircular(bytes, at)) {
+    if (FreeListIsCircular(bytes, at, &blocks_left)) {
       Fail(path, ": damaged HDF5 file (the heap at byte ", at, " runs in a circle); copy it again");
     }
   }
