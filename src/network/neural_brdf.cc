@@ -5,6 +5,7 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/network/batched_mlp.h"
+#include "pbnbrdf/network/nbrdf_files.h"
 #include "pbnbrdf/network/safetensors.h"
 
 namespace pbnbrdf {
@@ -27,9 +28,7 @@ const Tensor& Require(const std::string& path, const SafetensorsFile& file, cons
   const auto found = file.tensors.find(name);
   if (found == file.tensors.end()) Fail(path, ": tensor ", name, " is missing");
   if (found->second.shape != shape) {
-    std::string wanted;
-    for (auto extent : shape) wanted += StrCat(wanted.empty() ? "" : " x ", extent);
-    Fail(path, ": tensor ", name, " has another shape than ", wanted);
+    Fail(path, ": tensor ", name, " has another shape than ", ShapeText(shape));
   }
   return found->second;
 }
@@ -81,6 +80,7 @@ NeuralBrdf::NeuralBrdf(const NetworkShape& shape, std::vector<double> weights, M
 }
 
 NeuralBrdf NeuralBrdf::Read(const std::string& path) {
+  if (IsNbrdfFile(path)) return ReadNbrdf(path);
   const SafetensorsFile file = ReadSafetensors(path);
   const NetworkShape shape = ReadShape(path, file);
   if (file.tensors.size() != 2 * static_cast<std::size_t>(shape.num_layers())) {

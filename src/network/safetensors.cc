@@ -16,7 +16,6 @@ using nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "safetensors files are little-endian");
 
-constexpr std::uintmax_t kLargestFile = 64 << 20;
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kAlignment = 8;
 
@@ -31,18 +30,6 @@ void AppendValues(const std::string& bytes, Range range, std::vector<double>* va
     std::memcpy(&value, bytes.data() + at, sizeof(T));
     values->push_back(value);
   }
-}
-
-std::size_t ElementCount(const std::string& place, const std::vector<std::int64_t>& shape,
-                         std::size_t limit) {
-  std::size_t count = 1;
-  for (std::int64_t extent : shape) {
-    if (extent < 1 || static_cast<std::uint64_t>(extent) > limit / count) {
-      Fail(place, ": shape ", json(shape).dump(), " doesn't fit the file");
-    }
-    count *= extent;
-  }
-  return count;
 }
 
 // `data`: where the tensors' bytes begin in `bytes`.
@@ -61,7 +48,8 @@ Tensor ParseTensor(const std::string& place, const json& entry, const std::strin
   if (dtype != "F64" && dtype != "F32") Fail(place, ": dtype ", dtype, " is not one of F64 | F32");
   const std::size_t size = dtype == "F64" ? sizeof(double) : sizeof(float);
   const std::size_t available = bytes.size() - data;
-  const std::size_t count = ElementCount(place, tensor.shape, available);
+  const std::size_t count = ElementCount(tensor.shape, available);
+  if (count == 0) Fail(place, ": shape ", json(tensor.shape).dump(), " doesn't fit the file");
   if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > available ||
       offsets[1] - offsets[0] != count * size) {
     Fail(place, ": data_offsets ", json(offsets).dump(), " don't fit shape ",
@@ -91,7 +79,7 @@ std::map<std::string, std::string> ParseMetadata(const std::string& path, const 
 }  // namespace
 
 SafetensorsFile ReadSafetensors(const std::string& path) {
-  const std::string bytes = ReadFile(path, kLargestFile);
+  const std::string bytes = ReadFile(path, kLargestWeightFile);
   std::uint64_t header_size = 0;
   if (bytes.size() >= kLengthBytes) std::memcpy(&header_size, bytes.data(), kLengthBytes);
   if (header_size < 2 || header_size > bytes.size() - kLengthBytes) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "network/npy_writer.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -73,9 +74,9 @@ TEST_F(Cli, HelpTeaches) {
 
 TEST_F(Cli, HelpNamesEveryChoice) {
   const std::string help = Run("fit --help").out;
-  for (const char* choices :
-       {"cartesian | reciprocal | multiscale | merl", "tanh | relu", "l2 | soft_l1 | huber | cauchy",
-        "uniform", "highlight", "single | double", "condensed | autodiff"}) {
+  for (const char* choices : {"cartesian | reciprocal | multiscale | merl", "tanh | relu",
+                              "l2 | soft_l1 | huber | cauchy", "uniform", "highlight",
+                              "single | double", "condensed | autodiff"}) {
     EXPECT_THAT(help, HasSubstr(choices));
   }
 }
@@ -220,6 +221,26 @@ TEST_F(Cli, ANetworkIsAMaterialToo) {
       Run("fit --material=" + Path("a.safetensors") + kQuick + "--out=" + Path("b.safetensors"))
           .status,
       0);
+}
+
+// A network 6-1-1-3 whose kernels are 0 and whose last bias is 0.1.
+TEST_F(Cli, APublishedNetworkIsAMaterialAndAFit) {
+  const auto write = [&](const std::string& name, const std::string& shape, int count, double x) {
+    WriteBytes(Path(name + ".npy"), NpyBytes(NpyHeader("<f4", shape),
+                                             ElementBytes<float>(std::vector<double>(count, x))));
+  };
+  write("fc1", "6, 1", 6, 0.0), write("fc2", "1, 1", 1, 0.0), write("fc3", "1, 3", 3, 0.0);
+  write("b1", "1,", 1, 0.0), write("b2", "1,", 1, 0.0), write("b3", "3,", 3, 0.1);
+  const std::string network = Path("fc1.npy");
+  EXPECT_THAT(Run("info " + network).out,
+              HasSubstr("neural BRDF 6-1-1-3 relu, cartesian encoding"));
+  EXPECT_EQ(Run("tabulate --material=" + network + " --out=" + Path("a.binary")).status, 0);
+  const Result eval =
+      Run("eval --json --eval_samples=500 --fit=" + network + " --material=" + network);
+  EXPECT_EQ(json::parse(eval.out)["mean_abs_log_error"], 0.0);
+  EXPECT_EQ(Run("fit --material=" + network + kQuick + "--out=" + Path("b.safetensors")).status, 0);
+  WriteBytes(Path("bad.h5"), "x");
+  ExpectError("info " + Path("bad.h5"), 1, "bad.h5: not an HDF5 file");
 }
 
 TEST_F(Cli, ValuesAppendsToWhatItReads) {

@@ -8,7 +8,8 @@
 
 namespace pbnbrdf {
 
-// What OpenMeasuredBrdf (brdf/open_brdf.h) opens, or "FILE.safetensors". Throws Error.
+// What OpenMeasuredBrdf (brdf/open_brdf.h) opens, or a network: "FILE.safetensors", or
+// one that Sztrajman et al. published: "FILE.h5", "BASEfc1.npy" (nbrdf_files.h). Throws Error.
 std::unique_ptr<Brdf> OpenBrdf(const std::string& source);
 
 }  // namespace pbnbrdf

@@ -3,17 +3,12 @@
 // tensors' bytes without gaps. Reading one runs no code.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <string>
-#include <vector>
+
+#include "pbnbrdf/network/tensor.h"
 
 namespace pbnbrdf {
-
-struct Tensor {
-  std::vector<std::int64_t> shape;
-  std::vector<double> values;  // row-major
-};
 
 struct SafetensorsFile {
   std::map<std::string, Tensor> tensors;

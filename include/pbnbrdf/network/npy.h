@@ -1,0 +1,16 @@
+// npy.h: NumPy's file format for one array, versions 1 to 3: "\x93NUMPY", a version, the header's
+// length, the header {'descr': '<f4', 'fortran_order': False, 'shape': (6, 21), }, the elements.
+#pragma once
+
+#include <string>
+
+#include "pbnbrdf/network/tensor.h"
+
+namespace pbnbrdf {
+
+// Reads little-endian float32 and float64 ('<f4', '<f8') in either order. Throws Error if the file
+// is missing, larger than kLargestWeightFile, of another type, or longer or shorter than its header
+// says.
+Tensor ReadNpy(const std::string& path);
+
+}  // namespace pbnbrdf
