@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 
@@ -66,6 +67,16 @@ inline std::vector<double> RandomNumbers(std::size_t count, double low, double h
   std::vector<double> numbers(count);
   for (double& number : numbers) number = uniform(random);
   return numbers;
+}
+
+// The rows of a CSV file but its header.
+inline std::vector<std::vector<std::string>> ReadCsvRows(const std::string& path) {
+  std::ifstream in(path);
+  std::vector<std::vector<std::string>> rows;
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) rows.push_back(Split(line, ','));
+  return rows;
 }
 
 }  // namespace pbnbrdf

@@ -3,7 +3,6 @@
 #include <map>
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/brdf/open_brdf.h"
 
 namespace pbnbrdf {
@@ -18,14 +17,10 @@ constexpr char kRow[] = ",0.1,0.2,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n";
 TEST(Sgd, AgreesWithTheOracle) {
   PBNBRDF_REFERENCE_FILE(parameters, "sgd/parameters.csv");
   PBNBRDF_REFERENCE_FILE(oracle, "sgd/values.csv");
-  std::ifstream in(oracle);
-  std::string line;
-  std::getline(in, line);
   std::map<std::string, std::unique_ptr<Brdf>> materials;
   int rows = 0;
   double worst = 0.0;
-  while (std::getline(in, line)) {
-    const std::vector<std::string> row = Split(line, ',');
+  for (const std::vector<std::string>& row : ReadCsvRows(oracle)) {
     auto& material = materials[row[0]];
     if (!material) material = OpenMeasuredBrdf("sgd:" + parameters + "#" + row[0]);
     const auto number = [&](int column) { return ParseNumber("oracle", row[column]); };
@@ -37,7 +32,7 @@ TEST(Sgd, AgreesWithTheOracle) {
     material->Evaluate({&pair, 1}, {&value, 1});
     for (int c = 0; c < 3; ++c) {
       const double error = std::abs(value[c] - number(5 + c)) / number(5 + c);
-      EXPECT_LE(error, narrow ? 1e-7 : 1e-12) << line;
+      EXPECT_LE(error, narrow ? 1e-7 : 1e-12) << row[0] << " " << row[1];
       if (!narrow) worst = std::max(worst, error);
     }
     ++rows;
