@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pbnbrdf/kernels/kernels.h"
+#include "pbnbrdf/kernels/products.h"
 
 namespace pbnbrdf {
 namespace {

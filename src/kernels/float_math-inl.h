@@ -12,11 +12,10 @@
 #include <hwy/highway.h>
 
 #include "tanh_table.h"
+#include "target-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 // HWY_TARGET is smaller for better instruction sets.
 #undef PBNBRDF_HAS_AVX512

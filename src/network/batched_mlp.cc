@@ -1,5 +1,8 @@
 #include "pbnbrdf/network/batched_mlp.h"
 
+#include "pbnbrdf/kernels/passes.h"
+#include "pbnbrdf/kernels/products.h"
+
 namespace pbnbrdf {
 namespace {
 

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <numbers>
 
+#include "pbnbrdf/kernels/kernels.h"
+#include "pbnbrdf/kernels/losses.h"
+#include "pbnbrdf/kernels/passes.h"
+
 namespace pbnbrdf {
 namespace {
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "pbnbrdf/kernels/kernels.h"
+#include "pbnbrdf/kernels/products.h"
+
 namespace pbnbrdf {
 namespace {
 

@@ -13,6 +13,7 @@
 #include "pbnbrdf/base/aligned_vector.h"
 #include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/kernels/kernels.h"
+#include "pbnbrdf/kernels/losses.h"
 #include "pbnbrdf/problem/fit_problem.h"
 
 namespace pbnbrdf {

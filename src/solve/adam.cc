@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/kernels/adam_step.h"
+#include "pbnbrdf/kernels/kernels.h"
 #include "pbnbrdf/problem/minibatch_gradient.h"
 #include "pbnbrdf/problem/minibatches.h"
 

@@ -1,0 +1,78 @@
+// Each kernel against the formula that defines it, and in its limits.
+#include "pbnbrdf/kernels/losses.h"
+
+#include "instruction_sets.h"
+#include "kernels_test_util.h"
+#include "test_util.h"
+
+namespace pbnbrdf::kernels {
+namespace {
+
+TYPED_TEST_SUITE(Kernels, Precisions);
+
+TYPED_TEST(Kernels, LogResidualsHaveTheirSlopes) {
+  using T = TypeParam;
+  std::vector<T> z = Random<T>(3 * kBatch, 12);
+  for (std::size_t k = 0; k < z.size(); ++k)
+    z[k] *= k % 3 == 0 ? T(1e-6) : k % 3 == 1 ? T(1) : T(20);
+  const auto targets = RandomNumbers(3 * kBatch, 0.0, 3.0, 13);
+  const auto cos_i = RandomNumbers(kBatch, 0.0, 1.0, 14);
+  ForEachInstructionSet([&](const char* set) {
+    std::vector<double> residuals(3 * kBatch), slopes(3 * kBatch);
+    LogResiduals(z.data(), targets.data(), cos_i.data(), residuals.data(), slopes.data());
+    for (int k = 0; k < 3 * kBatch; ++k) {
+      const double x = z[k], cos = cos_i[k % kBatch], log = std::log1p(std::expm1(x) * cos);
+      EXPECT_NEAR(residuals[k], targets[k] - log, 2e-15 * (targets[k] + std::abs(log))) << set;
+      const double slope = -std::exp(x) * cos / (1.0 + std::expm1(x) * cos);
+      // expm1(z) + 1 and 1 + u cancel where z is very negative and cos_i close to 1.
+      EXPECT_NEAR(slopes[k], slope, 4e-15 * (cos / (1.0 + std::expm1(x) * cos) - slope)) << set;
+    }
+  });
+}
+
+TYPED_TEST(Kernels, LogResidualsPassOnWhatIsNotFinite) {
+  using T = TypeParam;
+  constexpr T kInfinity = std::numeric_limits<T>::infinity();
+  const std::vector<double> targets(3 * kBatch, 1.0), cos_i(kBatch, 0.5);
+  for (T bad : {T(1e4), kInfinity, -kInfinity, std::numeric_limits<T>::quiet_NaN()}) {
+    const std::vector<T> z(3 * kBatch, bad);
+    ForEachInstructionSet([&](const char* set) {
+      std::vector<double> residuals(3 * kBatch), slopes(3 * kBatch);
+      LogResiduals(z.data(), targets.data(), cos_i.data(), residuals.data(), slopes.data());
+      for (double r : residuals) EXPECT_FALSE(std::isfinite(r)) << set << ", z = " << bad;
+    });
+  }
+}
+
+TYPED_TEST(Kernels, AbsoluteLossGradientStandsUpToLargeAndSmallOutputs) {
+  // In the limits 1 + f^ cos_i ~ f^ cos_i and f^ = -1. The formula itself: minibatch_gradient_test.
+  using T = TypeParam;
+  std::vector<T> z(3 * kBatch), cos_i(kBatch, T(1)), f(3 * kBatch, T(0.5)), gradient(3 * kBatch);
+  std::fill_n(z.begin(), kBatch, T(40));
+  std::fill_n(z.begin() + kBatch, kBatch, T(-40));
+  std::fill_n(z.begin() + 2 * kBatch, kBatch, std::log1p(T(0.5)));
+  cos_i[1] = 0;  // no light
+  AbsoluteLossGradient(z.data(), cos_i.data(), f.data(), T(2), T(0), gradient.data());
+  for (int n = 0; n < kBatch; ++n) {
+    EXPECT_NEAR(gradient[n], n == 1 ? 0 : 2, 1e-6);
+    EXPECT_NEAR(gradient[kBatch + n], n == 1 ? 0 : -2, 1e-6);
+    EXPECT_LE(std::abs(gradient[2 * kBatch + n]), 2);  // a kink
+  }
+}
+
+TYPED_TEST(Kernels, ReflectanceSumsAreClamped) {
+  using T = TypeParam;
+  const auto z = Random<T>(3 * kBatch, 7), weights = Random<T>(kBatch, 8);
+  T sums[3] = {1, 2, 3};
+  AddReflectanceSums(z.data(), weights.data(), sums);
+  for (int c = 0; c < 3; ++c) {
+    double sum = c + 1;
+    for (int n = 0; n < kBatch; ++n) {
+      sum += weights[n] * std::expm1(std::max(0.0, double(z[c * kBatch + n])));
+    }
+    EXPECT_NEAR(sums[c], sum, this->kTolerance);
+  }
+}
+
+}  // namespace
+}  // namespace pbnbrdf::kernels
