@@ -11,18 +11,22 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCurvePoints = 200;
-constexpr char kPeer[] = "peer";
+
+constexpr int kDigits = 3;
 
 struct Column {
   const char* name;
-  int digits;
-  bool large_is_good;
+  bool large_is_good, in_summary;
 };
 
-constexpr Column kColumns[] = {{"seconds", 3, false},           {"error", 3, false},
-                               {"peer, s", 3, false},           {"peer's error", 3, false},
-                               {"s to that error", 3, false},   {"times as fast", 3, true},
-                               {"error at peer's s", 3, false}, {"times as accurate", 3, true}};
+constexpr Column kColumns[] = {{"seconds", false, true},
+                               {"error", false, true},
+                               {"peer, s", false, false},
+                               {"peer's error", false, false},
+                               {"s to that error", false, false},
+                               {"times as fast", true, true},
+                               {"error at peer's s", false, false},
+                               {"times as accurate", true, true}};
 constexpr std::size_t kOwnColumns = 2;
 
 // The values of one fit, in the order of kColumns; those of the peer unknown if there is none.
@@ -64,35 +68,69 @@ std::vector<double> Worst(const std::vector<std::vector<double>>& rows) {
   });
 }
 
-// The fits of a network and solver.
-std::string Markdown(const std::vector<const FitRecord*>& fits, const PeerRecords& peers) {
-  const std::size_t columns = peers.empty() ? kOwnColumns : std::size(kColumns);
-  std::vector<std::string> names = {"material"};
-  for (std::size_t c = 0; c < columns; ++c) names.push_back(kColumns[c].name);
-  Table table(names);
-  const auto add = [&](const std::string& name, const std::vector<double>& values) {
-    std::vector<std::string> row = {name};
-    for (std::size_t c = 0; c < columns; ++c) {
-      row.push_back(Significant(values[c], kColumns[c].digits));
-    }
-    table.Add(row);
-  };
-  std::vector<std::vector<double>> of_fits, of_materials;
-  std::vector<std::string> done;
+// The fits of a network and solver: a row for each material, over all of them the median of these
+// rows, and the worst fit's values.
+struct Group {
+  std::vector<std::string> materials;
+  std::vector<std::vector<double>> rows;
+  std::vector<double> median, worst;
+};
+
+Group MakeGroup(const std::vector<const FitRecord*>& fits, const PeerRecords& peers) {
+  Group group;
+  std::vector<std::vector<double>> of_fits;
   for (const FitRecord* first : fits) {
-    if (std::find(done.begin(), done.end(), first->material) != done.end()) continue;
-    done.push_back(first->material);
+    if (std::find(group.materials.begin(), group.materials.end(), first->material) !=
+        group.materials.end()) {
+      continue;
+    }
     std::vector<std::vector<double>> of_seeds;
     for (const FitRecord* fit : fits) {
       if (fit->material == first->material) of_seeds.push_back(Measures(*fit, peers));
     }
     of_fits.insert(of_fits.end(), of_seeds.begin(), of_seeds.end());
-    of_materials.push_back(Medians(of_seeds));
-    add(first->material, of_materials.back());
+    group.materials.push_back(first->material);
+    group.rows.push_back(Medians(of_seeds));
   }
-  add("**median**", Medians(of_materials));
-  add("**worst of all fits**", Worst(of_fits));
+  group.median = Medians(group.rows);
+  group.worst = Worst(of_fits);
+  return group;
+}
+
+std::string MaterialsMarkdown(const Group& group, std::size_t columns) {
+  std::vector<std::string> names = {"material"};
+  for (std::size_t c = 0; c < columns; ++c) names.push_back(kColumns[c].name);
+  Table table(names);
+  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+    std::vector<std::string> row = {name};
+    for (std::size_t c = 0; c < columns; ++c) row.push_back(Significant(values[c], kDigits));
+    table.Add(row);
+  };
+  for (std::size_t m = 0; m < group.rows.size(); ++m) add(group.materials[m], group.rows[m]);
+  add("**median**", group.median);
+  add("**worst of all fits**", group.worst);
   return table.Markdown();
+}
+
+Table SummaryTable(std::size_t columns) {
+  std::vector<std::string> names = {"hidden units", "solver"};
+  for (std::size_t c = 0; c < columns; ++c) {
+    if (!kColumns[c].in_summary) continue;
+    names.push_back(StrCat(kColumns[c].name, ", median"));
+    names.push_back("worst");
+  }
+  return Table(names);
+}
+
+void AddSummary(const std::string& hidden, const std::string& solver, const Group& group,
+                std::size_t columns, Table* table) {
+  std::vector<std::string> row = {hidden, solver};
+  for (std::size_t c = 0; c < columns; ++c) {
+    if (!kColumns[c].in_summary) continue;
+    row.push_back(Significant(group.median[c], kDigits));
+    row.push_back(Significant(group.worst[c], kDigits));
+  }
+  table->Add(row);
 }
 
 // The values of `name(fit)`, each once, in the order of the fits.
@@ -133,7 +171,7 @@ Series MedianLine(const std::string& label, const std::vector<Curve>& curves) {
 Series PeerLine(const PeerRecords& peers) {
   std::vector<Curve> curves;
   for (const auto& [material, peer] : peers) curves.push_back(ErrorCurve(peer.trace));
-  Series line = MedianLine(kPeer, curves);
+  Series line = MedianLine(StrCat("peer, ", kPeerHidden), curves);
   line.dashed = true;
   return line;
 }
@@ -180,13 +218,17 @@ Versus Compare(const FitRecord& fit, const PeerResult& peer) {
 }
 
 std::string ComparisonMarkdown(const std::vector<FitRecord>& fits, const PeerRecords& peers) {
+  const std::size_t columns = peers.empty() ? kOwnColumns : std::size(kColumns);
   std::string text;
+  Table summary = SummaryTable(columns);
   ForEachGroup(fits, [&](const std::string& hidden, const std::string& solver,
-                         const std::vector<const FitRecord*>& group) {
-    text += StrCat(text.empty() ? "" : "\n", "### ", solver, ", ", hidden, " hidden units\n\n",
-                   Markdown(group, peers));
+                         const std::vector<const FitRecord*>& of_group) {
+    const Group group = MakeGroup(of_group, peers);
+    text += StrCat("### ", solver, ", ", hidden, " hidden units\n\n",
+                   MaterialsMarkdown(group, columns), "\n");
+    AddSummary(hidden, solver, group, columns, &summary);
   });
-  return text;
+  return StrCat(text, "### All materials\n\n", summary.Markdown());
 }
 
 Figure ComparisonFigure(const std::vector<FitRecord>& fits, const PeerRecords& peers) {
@@ -196,12 +238,14 @@ Figure ComparisonFigure(const std::vector<FitRecord>& fits, const PeerRecords& p
     const std::string title = StrCat(hidden, " hidden units, median of all fits");
     if (figure.panels.empty() || figure.panels.back().title != title) {
       figure.panels.push_back({title, "Seconds", "Held-out error (mean |eq. 6|)", {}});
-      if (!peers.empty()) figure.panels.back().series.push_back(PeerLine(peers));
     }
     std::vector<Curve> curves;
     for (const FitRecord* fit : group) curves.push_back(ErrorCurve(fit->trace));
     figure.panels.back().series.push_back(MedianLine(solver, curves));
   });
+  for (Panel& panel : figure.panels) {
+    if (!peers.empty()) panel.series.push_back(PeerLine(peers));
+  }
   return figure;
 }
 

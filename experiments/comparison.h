@@ -45,8 +45,8 @@ struct Versus {
 Versus Compare(const FitRecord& fit, const PeerResult& peer);
 
 // For each network and solver a table with a row for each material, the median of its seeds, and
-// below these the median and the worst of all fits. Without records of the peer its columns are
-// left out.
+// below these the median of the materials and the worst of all fits; at the end these two for each
+// network and solver. Without records of the peer its columns are left out.
 std::string ComparisonMarkdown(const std::vector<FitRecord>& fits, const PeerRecords& peers);
 
 // For each network a panel with the median curve of each solver, and of the peer.

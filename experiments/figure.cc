@@ -17,7 +17,7 @@ namespace {
 
 // Okabe and Ito's colours, which the colour-blind tell apart, without their yellow.
 constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                    "#E69F00", "#56B4E9", "#000000"};
+                                    "#E69F00", "#000000", "#56B4E9"};
 constexpr int kWidth = 720, kHeight = 440;  // of a panel, pixels
 constexpr std::size_t kMostMarkedPoints = 20;
 constexpr double kLineHeight = 0.055;  // of a panel's graph
@@ -64,15 +64,18 @@ const std::string& ColourKey(const Series& series) {
   return series.group.empty() ? series.label : series.group;
 }
 
-// Powers of ten, with 2 and 5 times these where there would be few.
+// Powers of ten, and multiples of these where there would be few.
 std::string LogTicks(const Range& range) {
-  const bool few = range.high / range.low < 50.0;
+  const double ratio = range.high / range.low;
+  std::vector<double> digits = {1.0};
+  if (ratio < 1000.0) digits = {1.0, 3.0};
+  if (ratio < 50.0) digits = {1.0, 2.0, 5.0};
   std::string ticks;
   for (int e = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10.0, e) <= range.high;
        ++e) {
-    for (double digit : {1.0, 2.0, 5.0}) {
+    for (double digit : digits) {
       const double value = digit * std::pow(10.0, e);
-      if (value < range.low || value > range.high || (!few && digit > 1.0)) continue;
+      if (value < range.low || value > range.high) continue;
       ticks += StrCat(ticks.empty() ? "" : ", ", Quoted(TickLabel(value)), " ", value);
     }
   }

@@ -11,7 +11,8 @@ struct Series {
   std::string label;                              // at the line's end
   std::vector<std::pair<double, double>> points;  // x > 0; y > 0 where the axis is logarithmic
   bool dashed = false;
-  std::string group;  // lines of a group have the same colour in all panels; "": of equal labels
+  std::string group =
+      "";  // lines of a group have the same colour in all panels; "": of equal labels
 };
 
 struct Panel {

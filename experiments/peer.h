@@ -17,6 +17,9 @@
 
 namespace pbnbrdf {
 
+// Its network's hidden layers, as HiddenName has them.
+inline constexpr char kPeerHidden[] = "21-21";
+
 struct PeerResult {
   double seconds = 0.0, error = 0.0;  // of the whole training; at its end
   std::vector<FitProgress> trace;     // an iteration is an epoch, the cost its training loss

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <numeric>
 #include <string_view>
 
 #include "curves.h"
@@ -137,12 +136,14 @@ std::size_t PeakMemory() { return StatusBytes("VmHWM"); }
 
 double MedianSeconds(double least_seconds, const std::function<void()>& work) {
   std::vector<double> seconds;
+  double total = 0.0;
   do {
     const auto start = std::chrono::steady_clock::now();
     work();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     seconds.push_back(elapsed.count());
-  } while (std::accumulate(seconds.begin(), seconds.end(), 0.0) < least_seconds);
+    total += elapsed.count();
+  } while (total < least_seconds);
   return Median(seconds);
 }
 

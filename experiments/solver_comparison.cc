@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "comparison.h"
 #include "experiment.h"
@@ -129,14 +130,23 @@ void PlanPeer(Plan* plan) {
   if (!plan->has_peer) std::fprintf(stderr, "left out, the peer: %s\n", why_not.c_str());
 }
 
+std::vector<MaterialSource> ParseMaterials(std::vector<std::string> texts) {
+  if (texts.empty()) {
+    texts = {"builtin:ivory-computer-plastic", "builtin:red-satin-plastic", "builtin:satin-gold"};
+  }
+  std::vector<MaterialSource> materials;
+  std::set<std::string> names;
+  for (const std::string& text : texts) {
+    materials.push_back(ParseMaterial(text));
+    const std::string& name = materials.back().name;
+    if (!names.insert(name).second) Fail("material '", text, "': another one is named ", name);
+  }
+  return materials;
+}
+
 Plan MakePlan(const std::vector<std::string>& materials) {
   Plan plan;
-  for (const std::string& material : materials) plan.materials.push_back(ParseMaterial(material));
-  if (materials.empty()) {
-    for (const char* name : {"ivory-computer-plastic", "red-satin-plastic", "satin-gold"}) {
-      plan.materials.push_back(ParseMaterial(StrCat("builtin:", name)));
-    }
-  }
+  plan.materials = ParseMaterials(materials);
   for (const std::string& name : Split(FLAGS_solvers, ',')) {
     plan.solvers.emplace_back(name, ParseName(kSettings, "solvers", name));
   }
@@ -204,7 +214,7 @@ class Comparison {
     table.Write(table_file);
     try {
       const PeerResult result = plan_.peer.Train(table_file, trace_file);
-      WriteTrace(material, "peer", HiddenName({21, 21}), 0, result.trace);
+      WriteTrace(material, "peer", kPeerHidden, 0, result.trace);
       std::fprintf(stderr, "%s, peer: %.3g in %.3g s\n", material.name.c_str(), result.error,
                    result.seconds);
       peers_[material.name] = result;
