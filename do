@@ -79,18 +79,20 @@ sanitize() {
   ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" --exclude-regex '^package$'
 }
 
-# experiments NAME [FLAG ...]: one of the programs in experiments/, its table and its figure.
+# experiments NAME [ARGUMENT ...]: a program of experiments/; its table and figure in build/results.
 experiments() {
-  name=${1:-}
-  if [ "$name" = microbenchmarks ] || [ ! -f "experiments/$name.cc" ] ||
-    ! grep -q '^int main' "experiments/$name.cc"; then
-    echo "usage: ./do experiments solver_comparison | jacobian_cost | scaling [--help | FLAG ...]" >&2
-    exit 2
-  fi
+  case ${1:-} in
+    solver_comparison | jacobian_cost | scaling) ;;
+    *)
+      echo "usage: ./do experiments solver_comparison | jacobian_cost | scaling [--help | ARGUMENT ...]" >&2
+      exit 2
+      ;;
+  esac
+  name=$1
   shift
   command -v gnuplot > /dev/null || packages="$packages gnuplot-nox"
   build_in "$build" --log-level=WARNING
-  "$build/bin/$name" --out_dir="$build/experiments" "$@"
+  "$build/bin/$name" --out_dir="$build/results" "$@"
 }
 
 case ${1:-} in

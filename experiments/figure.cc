@@ -20,7 +20,7 @@ constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                     "#E69F00", "#000000", "#56B4E9"};
 constexpr int kWidth = 720, kHeight = 440;  // of a panel, pixels
 constexpr std::size_t kMostMarkedPoints = 20;
-constexpr double kLineHeight = 0.055;  // of a panel's graph
+constexpr double kLineHeight = 0.06;  // of a panel's graph
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;

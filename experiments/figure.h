@@ -32,8 +32,7 @@ std::string GnuplotScript(const Figure& figure, const std::string& svg);
 // sentence, why there is no figure, as where gnuplot isn't installed.
 std::string DrawFigure(const Figure& figure, const std::string& svg);
 
-// Positions, moved as little as that needs, such that any two are `gap` apart, within [0, 1] if
-// there is room.
+// Positions, moved up so that any two are `gap` apart, and down where that leads beyond 1.
 std::vector<double> SpreadApart(const std::vector<double>& positions, double gap);
 
 }  // namespace pbnbrdf

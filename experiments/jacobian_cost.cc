@@ -11,12 +11,13 @@
 #include "process.h"
 
 DEFINE_string(material, "builtin:satin-gold", "source of reflectance");
-DEFINE_string(samples, "100,300,1000,3000,10000,30000,100000", "numbers of samples");
+DEFINE_string(samples, "100,300,1000,3000,10000", "numbers of samples");
 DEFINE_string(hidden, "8,8 21,21 32,32 64,64", "hidden layers' sizes of each network");
 DEFINE_string(shown_hidden, "21,21", "the network of the figure's left half");
 DEFINE_uint64(shown_samples, 1000, "the number of samples of its right half");
-DEFINE_double(most_entries, 7e6,
-              "of samples times weights with autodiff; more is left out, as it takes minutes");
+DEFINE_double(
+    most_entries, 7e6,
+    "of samples times weights with autodiff; what has more is left out, as it takes long");
 DEFINE_double(least_seconds, 0.5, "repeat an evaluation for so long, and take the median");
 
 namespace pbnbrdf {
