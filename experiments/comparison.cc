@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCurvePoints = 200;
-
 constexpr int kDigits = 3;
 
 struct Column {

@@ -207,6 +207,7 @@ std::string GnuplotScript(const Figure& figure, const std::string& svg) {
 }
 
 std::string DrawFigure(const Figure& figure, const std::string& svg) {
+  if (figure.panels.empty()) return "no figure: there is nothing to draw";
   const std::string script = std::filesystem::path(svg).replace_extension(".gnuplot").string();
   WriteFile(script, GnuplotScript(figure, svg));
   const int status = RunProgram({"gnuplot", script}).status;

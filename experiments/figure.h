@@ -25,11 +25,11 @@ struct Figure {
   std::vector<Panel> panels;  // side by side, two in a row
 };
 
-// The commands that make gnuplot draw the figure to `svg`.
+// The commands that make gnuplot draw the figure, of at least one panel, to `svg`.
 std::string GnuplotScript(const Figure& figure, const std::string& svg);
 
-// Writes the script next to `svg`, its suffix replaced by .gnuplot, and runs it. Returns "" or, in a
-// sentence, why there is no figure, as where gnuplot isn't installed.
+// Writes the script next to `svg`, its suffix replaced by .gnuplot, and runs it. Returns "" or, in
+// a sentence, why there is no figure, as where gnuplot isn't installed.
 std::string DrawFigure(const Figure& figure, const std::string& svg);
 
 // Positions, moved up so that any two are `gap` apart, and down where that leads beyond 1.

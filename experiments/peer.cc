@@ -14,6 +14,8 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::uintmax_t kLargestTrace = 1 << 24;
+constexpr char kCheckTorch[] =
+    "import importlib.util, sys; sys.exit(importlib.util.find_spec('torch') is None)";
 
 // Where a column stands in the header.
 std::size_t ColumnOf(const std::vector<std::string>& header, const std::string& name) {
@@ -62,9 +64,9 @@ std::vector<FitProgress> ParsePeerTrace(const std::string& csv) {
 
 std::string Peer::WhyUnavailable() const {
   if (!std::filesystem::exists(script)) return StrCat(script, ": no such file");
-  if (RunProgram({python, "-c", "import torch"}).status != 0) {
-    return StrCat(python, " has no module torch");
-  }
+  const int status = RunProgram({python, "-c", kCheckTorch}).status;
+  if (status == 127) return StrCat(python, ": no such program");
+  if (status != 0) return StrCat(python, " has no module torch");
   return "";
 }
 

@@ -13,8 +13,8 @@ struct ProgramResult {
   std::string output;  // what it wrote to standard output
 };
 
-// Waits for it to end. arguments: the program, sought in PATH, and its arguments. without: variables
-// taken from its environment.
+// Waits for it to end. arguments: the program, sought in PATH, and its arguments. without:
+// variables taken from its environment.
 ProgramResult RunProgram(const std::vector<std::string>& arguments,
                          const std::vector<std::string>& without = {});
 

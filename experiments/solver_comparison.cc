@@ -139,6 +139,7 @@ std::vector<MaterialSource> ParseMaterials(std::vector<std::string> texts) {
   for (const std::string& text : texts) {
     materials.push_back(ParseMaterial(text));
     const std::string& name = materials.back().name;
+    OpenBrdf(materials.back().source);  // so that a mistake shows before the first fit
     if (!names.insert(name).second) Fail("material '", text, "': another one is named ", name);
   }
   return materials;
@@ -174,37 +175,58 @@ class Comparison {
     for (const std::vector<int>& hidden : plan_.networks) {
       for (const auto& [name, setting] : plan_.solvers) {
         for (std::size_t seed : plan_.seeds) {
-          FitRecord record = RunFit(table, SetUp(setting, plan_.method, hidden, seed));
-          record.material = material.name;
-          record.solver = name;
-          WriteTrace(material, name, record.hidden, seed, record.trace);
-          std::fprintf(stderr, "%s, %s, %s, seed %zu: %.3g in %.3g s\n", material.name.c_str(),
-                       name.c_str(), record.hidden.c_str(), seed, record.error, record.seconds);
-          fits_.push_back(std::move(record));
+          RunFit(material, table, name, SetUp(setting, plan_.method, hidden, seed));
         }
       }
     }
   }
 
   void Report() const {
-    WriteReport("solver_comparison", ComparisonMarkdown(fits_, peers_));
+    WriteReport("solver_comparison", Preface() + ComparisonMarkdown(fits_, peers_));
     WriteFigure("solver_comparison", ComparisonFigure(fits_, peers_));
   }
 
  private:
-  static FitRecord RunFit(const MerlBrdf& table, FitSetUp set_up) {
+  // How the numbers came about, and what failed.
+  std::string Preface() const {
+    std::string text = StrCat("Method ", FLAGS_method, ", ", FLAGS_threads, " threads, seeds ",
+                              FLAGS_seeds, "; error: mean |eq. 6| on held-out samples.");
+    if (!peers_.empty()) {
+      text +=
+          " Times as fast: the peer's seconds over ours to its last error. Times as accurate: "
+          "its last error over ours after its seconds.";
+    }
+    text += StrCat(" Failed fits: ", failures_.size(), ".\n\n");
+    for (const std::string& failure : failures_) text += "- " + failure + "\n";
+    return text + (failures_.empty() ? "" : "\n");
+  }
+
+  void RunFit(const MaterialSource& material, const MerlBrdf& table, const std::string& solver,
+              FitSetUp set_up) {
     FitRecord record;
+    record.material = material.name;
+    record.solver = solver;
+    record.hidden = HiddenName(set_up.problem.hidden);
+    record.seed = static_cast<int>(set_up.problem.seed);
+    const std::string what =
+        StrCat(record.material, ", ", solver, ", ", record.hidden, ", seed ", record.seed, ": ");
     set_up.options.on_iteration = [&](const FitProgress& progress) {
       record.trace.push_back(progress);
       return true;
     };
-    const Fit fit = FitBrdf(table, set_up.problem, set_up.options);
-    record.hidden = HiddenName(set_up.problem.hidden);
-    record.seed = static_cast<int>(set_up.problem.seed);
-    record.seconds = fit.summary.seconds;
-    record.error =
-        MeasureErrors(table, fit.network, FLAGS_heldout_samples, /*seed=*/1).mean_abs_log_error;
-    return record;
+    try {
+      const Fit fit = FitBrdf(table, set_up.problem, set_up.options);
+      record.seconds = fit.summary.seconds;
+      record.error =
+          MeasureErrors(table, fit.network, FLAGS_heldout_samples, /*seed=*/1).mean_abs_log_error;
+    } catch (const Error& error) {
+      failures_.push_back(what + error.what());
+      std::fprintf(stderr, "%s\n", failures_.back().c_str());
+      return;
+    }
+    std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record.error, record.seconds);
+    WriteTrace(material, solver, record.hidden, set_up.problem.seed, record.trace);
+    fits_.push_back(std::move(record));
   }
 
   // A failure costs the peer's columns of this material only.
@@ -242,6 +264,7 @@ class Comparison {
   std::ofstream csv_;
   std::vector<FitRecord> fits_;
   PeerRecords peers_;
+  std::vector<std::string> failures_;
 };
 
 void Run(const std::vector<std::string>& materials) {

@@ -79,6 +79,7 @@ TEST(SolverComparison, WritesTraceTableAndFigure) {
     for (std::size_t c = 4; c < row.size(); ++c) EXPECT_GE(ParseNumber("cell", row[c]), 0.0);
   }
   EXPECT_THAT(run.output, Not(HasSubstr("peer")));
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 0."));
   EXPECT_EQ(Read(folder / "results/solver_comparison.md"), run.output);
   ExpectFigure(folder / "results/solver_comparison.svg");
 }
@@ -109,12 +110,33 @@ TEST(SolverComparison, DoesWithoutThePeerIfItCantRun) {
   EXPECT_THAT(run.output, Not(HasSubstr("peer")));
 }
 
-TEST(SolverComparison, RejectsUnknownNames) {
+// A MERL table with a single valid bin: too little to draw samples from.
+void WriteEmptyTable(const std::string& path) {
+  constexpr std::int32_t kSizes[] = {90, 90, 180};
+  std::vector<double> planes(3 * 90 * 90 * 180, -1.0);
+  for (std::size_t channel = 0; channel < 3; ++channel) planes[channel * planes.size() / 3] = 1.0;
+  WriteBytes(path, std::string(reinterpret_cast<const char*>(kSizes), sizeof(kSizes)) +
+                       std::string(reinterpret_cast<const char*>(planes.data()),
+                                   planes.size() * sizeof(double)));
+}
+
+TEST(SolverComparison, CountsFitsThatFail) {
+  const TemporaryFolder folder;
+  WriteEmptyTable(folder / "empty.binary");
+  const ProgramResult run =
+      RunIn(folder, "solver_comparison", {"--solvers=tiny_lm", folder / "empty.binary"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 1.\n\n- empty, tiny_lm, 21-21, seed 1: "));
+}
+
+TEST(SolverComparison, RejectsWhatItCantDo) {
   const TemporaryFolder folder;
   for (const char* flag : {"--solvers=sgd", "--method=other", "--hidden=a", "--seeds=0"}) {
     EXPECT_EQ(RunIn(folder, "solver_comparison", {flag}).status, 1) << flag;
   }
-  EXPECT_EQ(RunIn(folder, "solver_comparison", {"a/gold.binary", "b/gold.binary"}).status, 1);
+  EXPECT_EQ(
+      RunIn(folder, "solver_comparison", {"builtin:satin-gold", "x=builtin:satin-gold"}).status, 1);
+  EXPECT_EQ(RunIn(folder, "solver_comparison", {"absent.binary"}).status, 1);
 }
 
 TEST(JacobianCost, WritesTableAndFigure) {

@@ -44,6 +44,12 @@ TEST(GnuplotScript, LeavesOutPanelsAndLinesWithoutPoints) {
   EXPECT_THAT(script, Not(HasSubstr("nothing")));
 }
 
+TEST(DrawFigure, WithoutPanelsThereIsNone) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(DrawFigure({}, folder / "f.svg"), "no figure: there is nothing to draw");
+  EXPECT_EQ(folder.file_count(), 0u);
+}
+
 TEST(DrawFigure, DrawsTheLabels) {
   const TemporaryFolder folder;
   const std::string problem = DrawFigure(OneLine("tiny_lm"), folder / "f.svg");

@@ -47,6 +47,8 @@ TEST(Peer, SaysWhyItCantRun) {
   peer.script = folder / "present.py";
   WriteBytes(peer.script, "");
   EXPECT_EQ(peer.WhyUnavailable(), "false has no module torch");
+  peer.python = "no-program-of-this-name";
+  EXPECT_EQ(peer.WhyUnavailable(), "no-program-of-this-name: no such program");
 }
 
 }  // namespace
