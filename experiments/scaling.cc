@@ -22,7 +22,7 @@ DEFINE_string(samples, "1e3,1e4,1e5,1e6", "numbers of samples, also of the fits"
 DEFINE_string(threads, "1,2", "numbers of threads; those that the machine lacks are left out");
 DEFINE_string(hidden, "8,8 21,21 32,32", "hidden layers' sizes of each network");
 DEFINE_string(fit_hidden, "21,21", "of the fits whose memory is measured");
-DEFINE_int32(fit_iterations, 3, "of these fits, all samples being there from the first one on");
+DEFINE_int32(fit_iterations, 3, "of these fits, each with all samples");
 DEFINE_double(least_seconds, 0.5, "repeat an evaluation for so long, and take the median");
 
 namespace pbnbrdf {
@@ -51,12 +51,12 @@ struct FitMemory {
   double megabytes;
 };
 
+// All samples from the first iteration on.
 FitProblem MakeProblem(const std::vector<int>& hidden, std::size_t samples) {
   FitProblem problem;
   problem.hidden = hidden;
   problem.samples = samples;
   problem.first_samples = samples;
-  problem.energy_weight = 0.0;
   problem.Validate();
   return problem;
 }
@@ -117,7 +117,8 @@ std::vector<Timing> MeasureTimes(const std::vector<std::size_t>& counts) {
   std::vector<Timing> timings;
   for (const std::vector<int>& hidden : ParseNetworks("hidden", FLAGS_hidden)) {
     for (std::size_t count : counts) {
-      const FitProblem problem = MakeProblem(hidden, count);
+      FitProblem problem = MakeProblem(hidden, count);
+      problem.energy_weight = 0.0;  // it isn't over the samples
       const auto objective = MakeObjective(problem, std::span(samples).first(count));
       const std::vector<double> weights = InitialWeights(problem.Shape(), samples, problem.seed);
       const std::size_t first = timings.size();
