@@ -24,11 +24,13 @@ namespace pbnbrdf {
 namespace {
 
 constexpr char kUsage[] =
-    "jacobian_cost: time and memory of one evaluation of J'J and J'r on one thread, by autodiff "
-    "jets\n"
-    "(a block a sample), with a dense Jacobian in chunks, and as the condensed block does it.\n\n"
-    "  jacobian_cost --out_dir=results\n\n"
-    "Writes jacobian_cost.csv, .md and .svg.\n";
+    R"(jacobian_cost: time and memory of one evaluation of J'J and J'r on one thread, by autodiff jets (a
+block a sample), with a dense Jacobian in chunks, and as the condensed block does it.
+
+  jacobian_cost --out_dir=results
+
+Writes jacobian_cost.csv, jacobian_cost.md and jacobian_cost.svg.
+)";
 
 struct Cost {
   DerivativeMethod method;

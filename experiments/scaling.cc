@@ -29,13 +29,14 @@ namespace pbnbrdf {
 namespace {
 
 constexpr char kUsage[] =
-    "scaling: time of one evaluation, with J'J and J'r (Linearize) and without derivatives "
-    "(Cost),\n"
-    "against numbers of samples, threads and weights, as a part of the machine's own rate of "
-    "matrix\n"
-    "products; and the peak memory of whole fits, each in a process of its own.\n\n"
-    "  scaling --out_dir=results\n\n"
-    "Writes scaling.csv, scaling_memory.csv, .md and .svg.\n";
+    R"(scaling: time of one evaluation, with J'J and J'r (Linearize) and without derivatives (Cost), over
+numbers of samples, threads and weights, as a part of the machine's own rate of matrix products;
+and the peak memory of whole fits, each in a process of its own.
+
+  scaling --out_dir=results
+
+Writes scaling.csv, scaling_memory.csv, scaling.md and scaling.svg.
+)";
 
 struct Timing {
   std::vector<int> hidden;

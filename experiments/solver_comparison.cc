@@ -36,16 +36,16 @@ namespace pbnbrdf {
 namespace {
 
 constexpr char kUsage[] =
-    "solver_comparison: held-out error against time of every solver, beside another "
-    "implementation.\n\n"
-    "  solver_comparison --out_dir=results builtin:satin-gold "
-    "metal=sgd:parameters.csv#chrome-steel\n"
-    "  solver_comparison --out_dir=results --peer=peer_train.py --seeds=1,2,3 merl/*.binary\n\n"
-    "The arguments are materials, anything that 'pbnbrdf fit --material' takes, CLASS= in front of "
-    "it\n"
-    "if wanted; without any, a few built-in ones. Each is tabulated as a MERL file, which all fit, "
-    "one\n"
-    "after the other. Writes solver_comparison.csv, a row for each iteration, .md and .svg.\n";
+    R"(solver_comparison: held-out error against time of every solver, beside another implementation.
+
+  solver_comparison --out_dir=results builtin:satin-gold metal=sgd:parameters.csv#chrome-steel
+  solver_comparison --out_dir=results --peer=peer_train.py --seeds=1,2,3 merl/*.binary
+
+The arguments are materials, anything that 'pbnbrdf fit --material' takes, CLASS= in front of it if
+wanted; without any, a few built-in ones. Each is tabulated as a MERL file, which all fit, one after
+the other. Writes solver_comparison.csv, with a row for each iteration, solver_comparison.md and
+solver_comparison.svg.
+)";
 
 struct SolverSetting {
   Solver solver;
