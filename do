@@ -1,5 +1,6 @@
 #!/bin/sh
-# What there is to do here: ./do demo | test | build | bench | sanitize. On Debian 12, as root or with sudo.
+# What there is to do here: ./do demo | test | build | bench | experiments NAME | sanitize.
+# On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
 build=build
@@ -79,14 +80,31 @@ sanitize() {
   ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" --exclude-regex '^package$'
 }
 
+# experiments NAME [ARGUMENT ...]: a program of experiments/; its table and figure in build/results.
+experiments() {
+  case ${1:-} in
+    solver_comparison | jacobian_cost | scaling) ;;
+    *)
+      echo "usage: ./do experiments solver_comparison | jacobian_cost | scaling [--help | ARGUMENT ...]" >&2
+      exit 2
+      ;;
+  esac
+  name=$1
+  shift
+  command -v gnuplot > /dev/null || packages="$packages gnuplot-nox"
+  build_in "$build" --log-level=WARNING
+  "$build/bin/$name" --out_dir="$build/results" "$@"
+}
+
 case ${1:-} in
   demo) demo ;;
   test) run_tests ;;
   build) build_in "$build" ;;
   bench) build_in "$build" && "$build/bin/microbenchmarks" ;;
+  experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
   *)
-    echo "usage: ./do demo | test | build | bench | sanitize" >&2
+    echo "usage: ./do demo | test | build | bench | experiments NAME | sanitize" >&2
     exit 2
     ;;
 esac

@@ -9,6 +9,18 @@
 #include <vector>
 
 namespace pbnbrdf {
+namespace {
+
+template <typename T>
+void AddProduct(const T* j, int rows, int columns, T* sum) {
+  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const Matrix> jacobian(j, rows, columns);
+  Eigen::Map<Matrix>(sum, columns, columns)
+      .template selfadjointView<Eigen::Lower>()
+      .rankUpdate(jacobian.transpose());
+}
+
+}  // namespace
 
 void MultiplyMatrices(int size) {
   using Matrix = Eigen::MatrixXf;
@@ -36,6 +48,14 @@ double MatrixProductRate() {
     return 2e-9 * kSize * kSize * kSize / seconds[kRuns / 2];
   }();
   return rate;
+}
+
+void AddProductWithItself(const float* j, int rows, int columns, float* sum) {
+  AddProduct(j, rows, columns, sum);
+}
+
+void AddProductWithItself(const double* j, int rows, int columns, double* sum) {
+  AddProduct(j, rows, columns, sum);
 }
 
 }  // namespace pbnbrdf

@@ -9,6 +9,7 @@
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
+#include "flops.h"
 #include "matrix_product.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/merl.h"
@@ -110,19 +111,6 @@ void BM_Backward(benchmark::State& state) {
   CountSamples(state, kernels::kBatch);
 }
 BENCHMARK(BM_Backward);
-
-// Multiplications and additions of J'J for one sample (normal_equations.h), pair products left out.
-double HessianFlops(const NetworkShape& shape) {
-  double flops = 0.0;
-  for (int l = 0; l < shape.num_layers(); ++l) {
-    const double out = shape.out(l), in = shape.in(l) + 1;
-    flops += 2.0 * (out * (out + 1) / 2) * (in * (in + 1) / 2);
-    for (int m = l + 1; m < shape.num_layers(); ++m) {
-      flops += 2.0 * out * shape.out(m) * in * (shape.in(m) + 1);
-    }
-  }
-  return flops;
-}
 
 // J'J and J'r of a batch.
 void BM_NormalEquations(benchmark::State& state) {

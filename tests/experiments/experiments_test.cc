@@ -1,0 +1,185 @@
+// Runs the programs of experiments/ with tiny settings.
+
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/base/text.h"
+#include "process.h"
+#include "test_util.h"
+
+namespace pbnbrdf {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string Read(const std::string& path) { return ReadFile(path, 1 << 24); }
+
+// The rows of a CSV below its header, which must be `header`.
+std::vector<std::vector<std::string>> ReadRows(const std::string& path, const std::string& header) {
+  std::vector<std::vector<std::string>> rows;
+  const std::vector<std::string> lines = Split(Read(path), '\n');
+  EXPECT_EQ(lines[0], header);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (lines[i].empty()) continue;
+    rows.push_back(Split(lines[i], ','));
+    EXPECT_EQ(rows.back().size(), Split(header, ',').size()) << lines[i];
+  }
+  return rows;
+}
+
+void ExpectFigure(const std::string& path) {
+  if (RunProgram({"gnuplot", "--version"}).status != 0) return;
+  EXPECT_THAT(Read(path), HasSubstr("</svg>"));
+}
+
+ProgramResult RunIn(const TemporaryFolder& folder, const std::string& program,
+                    std::vector<std::string> flags) {
+  flags.insert(flags.begin(),
+               {PBNBRDF_EXPERIMENTS "/" + program, "--out_dir=" + (folder / "results")});
+  return RunProgram(flags);
+}
+
+constexpr char kTraceHeader[] =
+    "material,material_class,solver,hidden,seed,iteration,seconds,cost,heldout_error";
+
+const std::vector<std::string> kTinyComparison = {
+    "--threads=1",           "--lm_iterations=2", "--lbfgs_iterations=2",
+    "--adam_epochs=1",       "--hidden=3 2,2",    "--adam_samples=1000",
+    "--heldout_samples=500", "--seeds=1,2",       "metal=builtin:satin-gold"};
+
+// Stands for an interpreter with torch and for the script that it would run.
+void WriteFakePython(const std::string& path) {
+  WriteBytes(path, R"(#!/bin/sh
+test "$1" = -c && exit 0
+while test $# -gt 0; do
+  case $1 in --material) table=$2 ;; --trace) trace=$2 ;; --method) method=$2 ;; esac
+  shift
+done
+test -s "$table" && test "$method" = pbnbrdf || exit 1
+printf 'epoch,seconds,train_loss,test_loss\n1,0.5,9,8\n2,1,7,6\n' > "$trace"
+echo '{"test_loss": 6, "train_seconds": 1}'
+)");
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+}
+
+TEST(SolverComparison, WritesTraceTableAndFigure) {
+  const TemporaryFolder folder;
+  const ProgramResult run = RunIn(folder, "solver_comparison", kTinyComparison);
+  ASSERT_EQ(run.status, 0);
+  const auto rows = ReadRows(folder / "results/solver_comparison.csv", kTraceHeader);
+  for (const char* solver : {"tiny_lm", "lm", "lbfgs", "lbfgs_absolute", "adam"}) {
+    EXPECT_GE(
+        std::count_if(rows.begin(), rows.end(), [&](const auto& r) { return r[2] == solver; }),
+        4)  // two networks, two seeds
+        << solver;
+    EXPECT_THAT(run.output, HasSubstr(StrCat("### ", solver, ", 2-2 hidden units")));
+  }
+  for (const auto& row : rows) {
+    EXPECT_EQ(row[0], "satin-gold");
+    EXPECT_EQ(row[1], "metal");
+    for (std::size_t c = 4; c < row.size(); ++c) EXPECT_GE(ParseNumber("cell", row[c]), 0.0);
+  }
+  EXPECT_THAT(run.output, Not(HasSubstr("peer")));
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 0."));
+  EXPECT_EQ(Read(folder / "results/solver_comparison.md"), run.output);
+  ExpectFigure(folder / "results/solver_comparison.svg");
+}
+
+TEST(SolverComparison, RunsThePeerOnTheSameTable) {
+  const TemporaryFolder folder;
+  WriteFakePython(folder / "python");
+  WriteBytes(folder / "peer.py", "");
+  std::vector<std::string> flags = kTinyComparison;
+  flags.insert(flags.end(),
+               {"--solvers=tiny_lm", "--method=pbnbrdf", "--peer=" + (folder / "peer.py"),
+                "--peer_python=" + (folder / "python")});
+  const ProgramResult run = RunIn(folder, "solver_comparison", flags);
+  ASSERT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, HasSubstr("times as fast"));
+  const auto rows = ReadRows(folder / "results/solver_comparison.csv", kTraceHeader);
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"satin-gold", "metal", "peer", "21-21", "0", "2",
+                                               "1", "7", "6"}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results/solver_comparison_table.binary"));
+}
+
+TEST(SolverComparison, DoesWithoutThePeerIfItCantRun) {
+  const TemporaryFolder folder;
+  std::vector<std::string> flags = kTinyComparison;
+  flags.insert(flags.end(), {"--solvers=tiny_lm", "--peer=" + (folder / "absent.py")});
+  const ProgramResult run = RunIn(folder, "solver_comparison", flags);
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, Not(HasSubstr("peer")));
+}
+
+// A MERL table with a single valid bin: too little to draw samples from.
+void WriteEmptyTable(const std::string& path) {
+  constexpr std::int32_t kSizes[] = {90, 90, 180};
+  std::vector<double> planes(3 * 90 * 90 * 180, -1.0);
+  for (std::size_t channel = 0; channel < 3; ++channel) planes[channel * planes.size() / 3] = 1.0;
+  WriteBytes(path, std::string(reinterpret_cast<const char*>(kSizes), sizeof(kSizes)) +
+                       std::string(reinterpret_cast<const char*>(planes.data()),
+                                   planes.size() * sizeof(double)));
+}
+
+TEST(SolverComparison, CountsFitsThatFail) {
+  const TemporaryFolder folder;
+  WriteEmptyTable(folder / "empty.binary");
+  const ProgramResult run =
+      RunIn(folder, "solver_comparison", {"--solvers=tiny_lm", folder / "empty.binary"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 1.\n\n- empty, tiny_lm, 21-21, seed 1: "));
+}
+
+TEST(SolverComparison, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--solvers=sgd", "--method=other", "--hidden=a", "--seeds=0"}) {
+    EXPECT_EQ(RunIn(folder, "solver_comparison", {flag}).status, 1) << flag;
+  }
+  EXPECT_EQ(
+      RunIn(folder, "solver_comparison", {"builtin:satin-gold", "x=builtin:satin-gold"}).status, 1);
+  EXPECT_EQ(RunIn(folder, "solver_comparison", {"absent.binary"}).status, 1);
+}
+
+TEST(JacobianCost, WritesTableAndFigure) {
+  const TemporaryFolder folder;
+  const ProgramResult run =
+      RunIn(folder, "jacobian_cost",
+            {"--samples=50,200", "--hidden=3 2,2", "--shown_hidden=2,2", "--shown_samples=200",
+             "--least_seconds=0", "--most_entries=4000"});
+  ASSERT_EQ(run.status, 0);
+  const auto rows = ReadRows(folder / "results/jacobian_cost.csv",
+                             "hidden,weights,samples,method,seconds,megabytes");
+  EXPECT_EQ(rows.size(), 10u);  // 2 x 2 x 3 without autodiff's two of 200 samples
+  for (const auto& row : rows) EXPECT_GT(ParseNumber("seconds", row[4]), 0.0);
+  EXPECT_THAT(run.output, HasSubstr("condensed, ms"));
+  ExpectFigure(folder / "results/jacobian_cost.svg");
+}
+
+TEST(Scaling, WritesTablesAndFigure) {
+  const TemporaryFolder folder;
+  const ProgramResult run = RunIn(folder, "scaling",
+                                  {"--samples=50,200", "--hidden=3 2,2", "--threads=1,1000",
+                                   "--fit_hidden=2,2", "--least_seconds=0"});
+  ASSERT_EQ(run.status, 0);
+  const auto rows = ReadRows(folder / "results/scaling.csv",
+                             "hidden,weights,samples,threads,linearize_seconds,cost_seconds,gflops,"
+                             "product_gflops_per_core,of_product,linearize_speed_up,cost_speed_up");
+  EXPECT_EQ(rows.size(), 4u);
+  for (const auto& row : rows) EXPECT_GT(ParseNumber("gflops", row[6]), 0.0);
+  EXPECT_EQ(ReadRows(folder / "results/scaling_memory.csv", "samples,peak_megabytes").size(), 2u);
+  EXPECT_THAT(run.output, HasSubstr("of matrix product"));
+  ExpectFigure(folder / "results/scaling.svg");
+}
+
+TEST(Experiments, HelpNamesTheFlags) {
+  const TemporaryFolder folder;
+  for (const char* program : {"solver_comparison", "jacobian_cost", "scaling"}) {
+    const ProgramResult run = RunIn(folder, program, {"--help"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_THAT(run.output, HasSubstr("--out_dir"));
+    EXPECT_THAT(run.output, HasSubstr("--hidden"));
+    EXPECT_THAT(run.output, Not(HasSubstr("--minloglevel")));
+  }
+}
+
+}  // namespace
+}  // namespace pbnbrdf
