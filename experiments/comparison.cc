@@ -18,14 +18,12 @@ struct Column {
   bool large_is_good, in_summary;
 };
 
-constexpr Column kColumns[] = {{"seconds", false, true},
-                               {"error", false, true},
-                               {"peer, s", false, false},
-                               {"peer's error", false, false},
-                               {"s to that error", false, false},
-                               {"times as fast", true, true},
-                               {"error at peer's s", false, false},
-                               {"times as accurate", true, true}};
+constexpr Column kColumns[] = {
+    {"seconds", false, true},         {"error", false, true},
+    {"peer, s", false, false},        {"peer's error", false, false},
+    {"its own figure", false, false}, {"s to that error", false, false},
+    {"times as fast", true, true},    {"error at peer's s", false, false},
+    {"times as accurate", true, true}};
 constexpr std::size_t kOwnColumns = 2;
 
 // The values of one fit, in the order of kColumns; those of the peer unknown if there is none.
@@ -37,8 +35,9 @@ std::vector<double> Measures(const FitRecord& fit, const PeerRecords& peers) {
     return values;
   }
   const Versus versus = Compare(fit, peer->second);
-  values.insert(values.end(), {peer->second.seconds, peer->second.error, versus.seconds_to_error,
-                               versus.times_as_fast, versus.error_then, versus.times_as_accurate});
+  values.insert(values.end(), {peer->second.seconds, peer->second.error, peer->second.own_error,
+                               versus.seconds_to_error, versus.times_as_fast, versus.error_then,
+                               versus.times_as_accurate});
   return values;
 }
 

@@ -8,6 +8,7 @@
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
+#include "pbnbrdf/network/nbrdf_files.h"
 #include "process.h"
 
 namespace pbnbrdf {
@@ -30,12 +31,13 @@ PeerResult ParsePeerSummary(std::string_view json) {
   const nlohmann::json summary = nlohmann::json::parse(json, nullptr, /*allow_exceptions=*/false);
   PeerResult result;
   for (const auto& [name, to] :
-       {std::pair("test_loss", &result.error), std::pair("train_seconds", &result.seconds)}) {
+       {std::pair("test_loss", &result.own_error), std::pair("train_seconds", &result.seconds)}) {
     if (!summary.is_object() || !summary.contains(name) || !summary[name].is_number()) {
       Fail("peer's summary: has no number ", name);
     }
     *to = summary[name].get<double>();
   }
+  result.error = result.own_error;
   return result;
 }
 
@@ -70,16 +72,23 @@ std::string Peer::WhyUnavailable() const {
   return "";
 }
 
-PeerResult Peer::Train(const std::string& table, const std::string& trace_file) const {
-  std::vector<std::string> arguments = {python,     script,    "--material", table,
-                                        "--method", method,    "--threads",  StrCat(threads),
-                                        "--trace",  trace_file};
+PeerResult Peer::Train(const std::string& table, const std::string& folder) const {
+  const std::string trace_file = folder + "/trace.csv", weight_file = folder + "/fc1.npy";
+  std::vector<std::string> arguments = {python,     script,     "--material", table,
+                                        "--method", method,     "--threads",  StrCat(threads),
+                                        "--trace",  trace_file, "--out",      folder};
   arguments.insert(arguments.end(), more_flags.begin(), more_flags.end());
   // It picks the linear algebra's kernels itself, unless these say otherwise.
   const ProgramResult run = RunProgram(arguments, {"OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"});
   if (run.status != 0) Fail(script, ": ended with status ", run.status);
   PeerResult result = ParsePeerSummary(run.output);
   result.trace = ParsePeerTrace(ReadFile(trace_file, kLargestTrace));
+  if (!std::filesystem::exists(weight_file)) return result;
+  const NeuralBrdf nbrdf = ReadNbrdf(weight_file);
+  const NetworkShape& shape = nbrdf.shape();
+  const Encoding encoding = method == "pbnbrdf" ? Encoding::kReciprocal : shape.encoding();
+  result.network.emplace(NetworkShape(encoding, shape.hidden(), shape.activation()),
+                         nbrdf.weights());
   return result;
 }
 

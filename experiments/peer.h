@@ -2,10 +2,11 @@
 //
 // It is run as
 //
-//   PYTHON SCRIPT --material TABLE.binary --method METHOD --threads N --trace FILE.csv
+//   PYTHON SCRIPT --material TABLE.binary --method METHOD --threads N --trace FILE.csv --out FOLDER
 //
 // prints a JSON object with test_loss (the mean absolute log error, eq. 6, on its held-out samples)
-// and train_seconds, and writes the columns epoch, seconds, train_loss and test_loss.
+// and train_seconds, and writes the columns epoch, seconds, train_loss and test_loss, and its network
+// as FOLDER/fc1.npy and so on (nbrdf_files.h), of method pbnbrdf for the reciprocal encoding.
 #pragma once
 
 #include <optional>
@@ -21,8 +22,11 @@ namespace pbnbrdf {
 inline constexpr char kPeerHidden[] = "21-21";
 
 struct PeerResult {
-  double seconds = 0.0, error = 0.0;  // of the whole training; at its end
+  double seconds = 0.0;               // of the whole training
+  double own_error = 0.0;             // at its end, on its own held-out samples
+  double error = 0.0;                 // on ours, where its network has been measured, or the same
   std::vector<FitProgress> trace;     // an iteration is an epoch, the cost its training loss
+  std::optional<NeuralBrdf> network;  // if it writes one
 };
 
 // Each throws Error unless the text is as described above.
@@ -37,8 +41,8 @@ struct Peer {
   // "" or, in a sentence, why it can't be run.
   std::string WhyUnavailable() const;
 
-  // Trains on a MERL file. Throws Error if that fails. trace_file: to be written.
-  PeerResult Train(const std::string& table, const std::string& trace_file) const;
+  // Trains on a MERL file. Throws Error if that fails. folder: to be written to.
+  PeerResult Train(const std::string& table, const std::string& folder) const;
 };
 
 }  // namespace pbnbrdf

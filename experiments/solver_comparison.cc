@@ -23,7 +23,7 @@ DEFINE_string(hidden, "21,21", "hidden layers' sizes of each network: '8,8,8 21,
 DEFINE_string(seeds, "1", "seeds of our fits");
 DEFINE_int32(threads, 2, "of each fit, the peer's too");
 DEFINE_double(max_seconds, 60.0, "of each of our fits");
-DEFINE_int32(lm_iterations, 150, "of tiny_lm and lm");
+DEFINE_int32(lm_iterations, pbnbrdf::FitOptions{}.max_iterations, "of tiny_lm and lm");
 DEFINE_int32(lbfgs_iterations, 10000, "of lbfgs and lbfgs_absolute");
 DEFINE_int32(adam_epochs, 100, "of adam");
 DEFINE_uint64(adam_samples, 640000, "training samples of adam");
@@ -193,12 +193,17 @@ class Comparison {
                               FLAGS_seeds, "; error: mean |eq. 6| on held-out samples.");
     if (!peers_.empty()) {
       text +=
-          " Times as fast: the peer's seconds over ours to its last error. Times as accurate: "
-          "its last error over ours after its seconds.";
+          " The peer's error is its network's on the same samples, and its own figure the one on "
+          "its own samples and interpolation. Times as fast: the peer's seconds over ours to its "
+          "error. Times as accurate: its error over ours after its seconds.";
     }
     text += StrCat(" Failed fits: ", failures_.size(), ".\n\n");
     for (const std::string& failure : failures_) text += "- " + failure + "\n";
     return text + (failures_.empty() ? "" : "\n");
+  }
+
+  static double HeldoutError(const MerlBrdf& table, const NeuralBrdf& network) {
+    return MeasureErrors(table, network, FLAGS_heldout_samples, /*seed=*/1).mean_abs_log_error;
   }
 
   void RunFit(const MaterialSource& material, const MerlBrdf& table, const std::string& solver,
@@ -217,8 +222,7 @@ class Comparison {
     try {
       const Fit fit = FitBrdf(table, set_up.problem, set_up.options);
       record.seconds = fit.summary.seconds;
-      record.error =
-          MeasureErrors(table, fit.network, FLAGS_heldout_samples, /*seed=*/1).mean_abs_log_error;
+      record.error = HeldoutError(table, fit.network);
     } catch (const Error& error) {
       failures_.push_back(what + error.what());
       std::fprintf(stderr, "%s\n", failures_.back().c_str());
@@ -232,10 +236,12 @@ class Comparison {
   // A failure costs the peer's columns of this material only.
   void RunPeer(const MaterialSource& material, const MerlBrdf& table) {
     const std::string table_file = OutputPath("solver_comparison_table.binary");
-    const std::string trace_file = OutputPath("solver_comparison_peer_trace.csv");
+    const std::string folder = OutputPath("solver_comparison_peer");
     table.Write(table_file);
     try {
-      const PeerResult result = plan_.peer.Train(table_file, trace_file);
+      std::filesystem::create_directories(folder);
+      PeerResult result = plan_.peer.Train(table_file, folder);
+      if (result.network) result.error = HeldoutError(table, *result.network);
       WriteTrace(material, "peer", kPeerHidden, 0, result.trace);
       std::fprintf(stderr, "%s, peer: %.3g in %.3g s\n", material.name.c_str(), result.error,
                    result.seconds);
@@ -244,7 +250,7 @@ class Comparison {
       std::fprintf(stderr, "%s, peer: %s\n", material.name.c_str(), error.what());
     }
     std::filesystem::remove(table_file);
-    std::filesystem::remove(trace_file);
+    std::filesystem::remove_all(folder);
   }
 
   // At once, so that a long run that is stopped has left its rows.
