@@ -84,7 +84,7 @@ TEST(ComparisonFigure, HasAPanelForEachNetwork) {
   std::vector<FitRecord> fits = {Record("gold", 1, {{1.0, 0.01}, {2.0, 0.001}}, 0.001),
                                  Record("gold", 1, {{1.0, 0.02}}, 0.02)};
   fits[1].hidden = "8-8";
-  const PeerRecords peers = {{"gold", {8.0, 0.01, fits[0].trace}}};
+  const PeerRecords peers = {{"gold", {8.0, 0.01, 0.01, fits[0].trace, {}}}};
   const Figure figure = ComparisonFigure(fits, peers);
   ASSERT_EQ(figure.panels.size(), 2u);
   ASSERT_EQ(figure.panels[1].series.size(), 2u);
