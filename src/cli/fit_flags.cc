@@ -5,9 +5,9 @@
 #include "pbnbrdf/base/text.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
-DEFINE_string(
-    encoding, "merl",
-    "the network's input: cartesian | reciprocal | multiscale | merl (README: Encodings)");
+DEFINE_string(encoding, "merl",
+              "the network's input: cartesian | reciprocal | multiscale | merl; all but the "
+              "first are exactly reciprocal");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
 DEFINE_string(initialization, "glorot",

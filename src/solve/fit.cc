@@ -68,7 +68,7 @@ class Fitter {
       least = cost;
       best = weights_;
     }
-    weights_ = best;
+    if (!best.empty()) weights_ = best;
   }
 
   // Minimises from where the last stage ended, on few samples at first and then on more and more.
@@ -125,7 +125,8 @@ class Fitter {
       return end == End::kNone;
     };
     Run(problem, stage);
-    if (summary_.termination == Termination::kConverged) return Next(/*overfit=*/1.0, /*is_idle=*/true);
+    if (summary_.termination == Termination::kConverged)
+      return Next(/*overfit=*/1.0, /*is_idle=*/true);
     if (end != End::kNone && end != End::kInterrupted) {
       summary_.termination = Termination::kConverged;
       summary_.message = "neither more samples nor more iterations help";
