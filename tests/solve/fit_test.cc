@@ -235,8 +235,7 @@ TEST(FitBrdf, GrowingSamplesEndNearTheErrorOfAllAtOnce) {
   const Fit all = FitBrdf(*gold, problem, options);
   problem.first_samples = 300;
   const Fit grown = FitBrdf(*gold, problem, options);
-  // Each ends in a local minimum of its own: over seeds and precisions the ratio is 0.7 to 3.2.
-  EXPECT_LT(MeanAbsDifference(*gold, grown.network), 4.0 * MeanAbsDifference(*gold, all.network));
+  EXPECT_LT(MeanAbsDifference(*gold, grown.network), 3.0 * MeanAbsDifference(*gold, all.network));
   EXPECT_LE(grown.summary.iterations, 100);
 }
 
