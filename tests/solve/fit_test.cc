@@ -396,7 +396,9 @@ TEST(FitBrdf, BadOptionsAreNamed) {
   EXPECT_THAT(error([](FitOptions* o) { o->starts = 0; }), HasSubstr("starts = 0"));
   EXPECT_THAT(error([](FitOptions* o) { o->curvature_samples = 0; }),
               HasSubstr("curvature_samples = 0"));
-  EXPECT_THAT(error([](FitOptions* o) { o->initial_weights = {1.0, 2.0}; }),
+  EXPECT_THAT(error([](FitOptions* o) {
+                o->initial_weights = {1.0, 2.0};
+              }),
               HasSubstr("initial_weights: 2 numbers, a 6-6-3 tanh network has 63"));
 }
 
