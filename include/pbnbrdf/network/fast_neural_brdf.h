@@ -8,8 +8,7 @@ namespace pbnbrdf {
 
 // The same network as a NeuralBrdf, encoded and passed through in single precision, several pairs to
 // an instruction: about 1e-5 f + 1e-6 apart from its value f, with the merl encoding up to
-// 1e-4 (1 + f). Networks that are
-// exactly reciprocal in double precision are so here.
+// 1e-4 (1 + f). Networks that are exactly reciprocal in double precision are so here.
 class FastNeuralBrdf final : public Brdf {
  public:
   // Weights beyond the range of float become infinite, which makes the value 0 or the largest.

@@ -26,8 +26,8 @@ class NormalEquations {
 
   void Clear();
 
-  // mlp: after Backward and TransposeInputs, its rows scaled by sqrt(weight). residuals: row after row, rows x kBatch,
-  // scaled alike.
+  // mlp: after Backward and TransposeInputs, its rows scaled by sqrt(weight). residuals: row after
+  // row, rows x kBatch, scaled alike.
   void AddBatch(const BatchedMlp<T>& mlp, const T* residuals);
 
   // In the order given. In parallel, as AddTo.
