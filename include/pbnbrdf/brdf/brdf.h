@@ -28,6 +28,9 @@ class Brdf {
   // Whether f is known at the pair: above the horizon and, for a table, in a bin with data.
   virtual bool IsKnown(const DirectionPair& pair) const { return pair.AboveHorizon(); }
 
+  // Whether f stays the same when wi and wo turn together about the normal.
+  virtual bool IsIsotropic() const { return true; }
+
   // One line: the model and its main parameters.
   virtual std::string Description() const = 0;
 
