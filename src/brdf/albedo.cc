@@ -1,41 +1,144 @@
 #include "pbnbrdf/brdf/albedo.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "pbnbrdf/brdf/merl.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+// P_n(x) and its derivative, by the three-term recurrence.
+struct Legendre {
+  double value, slope;
+};
+
+Legendre EvaluateLegendre(int n, double x) {
+  double before = 1.0, value = x;
+  for (int k = 2; k <= n; ++k) {
+    const double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
+    before = value;
+    value = next;
+  }
+  return {value, n * (x * value - before) / (x * x - 1.0)};
+}
+
+// theta_i of the k-th of n strata, and its share of the solid angle of the hemisphere, 2 pi.
+struct IncidentStratum {
+  double theta_i, solid_angle;
+};
+
+// theta_i = (pi/2) (1 - s^2), s from 1 to 0.
+IncidentStratum StratumOf(int k, int n) {
+  const double s = 1.0 - (k + 0.5) / n, theta_i = 0.5 * kPi * (1.0 - s * s);
+  return {theta_i, 2.0 * kPi * std::sin(theta_i) * kPi * s / n};
+}
+
+double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
+
+// Where the parabola through three neighbours has its vertex, if the middle one is the largest.
+// Returns whether it has.
+bool Vertex(const IncidentAlbedo* middle, int channel, double* theta_i) {
+  const double x0 = middle[-1].theta_i - middle[0].theta_i;
+  const double x1 = middle[1].theta_i - middle[0].theta_i;
+  const double y0 = middle[-1].albedo[channel] - middle[0].albedo[channel];
+  const double y1 = middle[1].albedo[channel] - middle[0].albedo[channel];
+  if (!(y0 < 0.0) || !(y1 < 0.0)) return false;
+  *theta_i = middle[0].theta_i + 0.5 * (y0 * x1 * x1 - y1 * x0 * x0) / (y0 * x1 - y1 * x0);
+  return true;
+}
+
+// One row of incident angles at the same phi_i, theta_i growing.
+std::vector<IncidentAlbedo> LocalMaxima(const Brdf& brdf, const AlbedoGrid& grid,
+                                        const AlbedoQuadrature& quadrature,
+                                        std::span<const IncidentAlbedo> row) {
+  std::vector<IncidentAlbedo> maxima;
+  for (std::size_t k = 1; k + 1 < row.size(); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      double theta_i;
+      if (!(row[k].albedo[c] > grid.refine_above) || !Vertex(&row[k], c, &theta_i)) continue;
+      const Vec3 wi = FromSpherical(theta_i, row[k].phi_i);
+      maxima.push_back({theta_i, row[k].phi_i, 0.0, DirectionalAlbedo(brdf, wi, quadrature)});
+    }
+  }
+  return maxima;
+}
+
 }  // namespace
 
-std::vector<AlbedoNode> AlbedoQuadrature(double theta_i, int n_theta, int n_phi) {
-  const Vec3 wi = FromSpherical(theta_i, 0.0);
+GaussLegendre::GaussLegendre(int n) : nodes(n), weights(n) {
+  for (int k = 0; k < (n + 1) / 2; ++k) {
+    // Newton's method from an estimate of the k-th root that is good to 1e-2 / n.
+    double x = std::cos(kPi * (k + 0.75) / (n + 0.5));
+    Legendre p = EvaluateLegendre(n, x);
+    for (int iteration = 0; iteration < 10 && std::abs(p.value) > 1e-15; ++iteration) {
+      x -= p.value / p.slope;
+      p = EvaluateLegendre(n, x);
+    }
+    nodes[k] = 0.5 * (1.0 - x);
+    nodes[n - 1 - k] = 0.5 * (1.0 + x);
+    weights[k] = weights[n - 1 - k] = 1.0 / ((1.0 - x * x) * p.slope * p.slope);
+  }
+}
+
+AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi) : x_(n_theta) {
+  const auto add_half = [&](double first, int n) {
+    const GaussLegendre rule(n);
+    for (int k = 0; k < n; ++k) {
+      phi_.push_back(first + kPi * rule.nodes[k]);
+      phi_weights_.push_back(kPi * rule.weights[k]);
+    }
+  };
+  add_half(-0.5 * kPi, n_phi / 2);
+  add_half(0.5 * kPi, n_phi - n_phi / 2);
+}
+
+AlbedoQuadrature AlbedoQuadrature::OnMerlRows(int n_theta, int n_phi) {
+  AlbedoQuadrature quadrature(n_theta, n_phi);
+  quadrature.on_merl_rows_ = true;
+  return quadrature;
+}
+
+std::vector<AlbedoQuadrature::Cell> AlbedoQuadrature::Cells(double theta_max) const {
+  if (!on_merl_rows_) return {{0.0, theta_max, 3}};
+  std::vector<Cell> cells;
+  for (int row = 0; row < MerlBrdf::kThetaH; ++row) {
+    const double first = MerlBrdf::RowAngle(row), last = MerlBrdf::RowAngle(row + 1);
+    if (first < theta_max) cells.push_back({first, std::min(last, theta_max), 1});
+  }
+  return cells;
+}
+
+std::vector<AlbedoNode> AlbedoQuadrature::Nodes(const Vec3& wi) const {
+  const double sin_i = std::hypot(wi.x, wi.y), phi_i = std::atan2(wi.y, wi.x);
   std::vector<AlbedoNode> nodes;
-  nodes.reserve(static_cast<std::size_t>(n_theta) * n_phi);
-  for (int p = 0; p < n_phi; ++p) {
-    const double phi = 2.0 * kPi * (p + 0.5) / n_phi;
+  for (std::size_t p = 0; p < phi_.size(); ++p) {
     // cos_o = 2 (wi.h) h.z - wi.z = |.| cos(2 theta_h - psi) reaches 0 at theta_max.
-    const double psi = std::atan2(wi.x * std::cos(phi), wi.z);
-    const double theta_max = 0.25 * kPi + 0.5 * psi;
-    for (int t = 0; t < n_theta; ++t) {
-      const double u = (t + 0.5) / n_theta;
-      const double theta_h = theta_max * u * u * u;
-      const Vec3 h = FromSpherical(theta_h, phi);
-      const double cos_d = Dot(wi, h);
-      const Vec3 wo = 2.0 * cos_d * h - wi;
-      if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
-      const double solid_angle_h = std::sin(theta_h) * theta_max * 3.0 * u * u / n_theta *  //
-                                   (2.0 * kPi / n_phi);
-      nodes.push_back({{wi, wo}, wo.z * 4.0 * cos_d * solid_angle_h});
+    const double psi = std::atan2(sin_i * std::cos(phi_[p]), wi.z);
+    for (const auto& [first, last, power] : Cells(0.25 * kPi + 0.5 * psi)) {
+      for (std::size_t t = 0; t < x_.nodes.size(); ++t) {
+        const double x = x_.nodes[t], below = std::pow(x, power - 1);
+        const double theta_h = first + (last - first) * below * x;
+        const Vec3 h = FromSpherical(theta_h, phi_i + phi_[p]);
+        const double cos_d = Dot(wi, h);
+        const Vec3 wo = 2.0 * cos_d * h - wi;
+        if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
+        const double solid_angle_h = std::sin(theta_h) * (last - first) * power * below *
+                                     x_.weights[t] * phi_weights_[p];
+        nodes.push_back({{wi, wo}, wo.z * 4.0 * cos_d * solid_angle_h});
+      }
     }
   }
   return nodes;
 }
 
-Rgb DirectionalAlbedo(const Brdf& brdf, double theta_i, int n_theta, int n_phi) {
-  const std::vector<AlbedoNode> nodes = AlbedoQuadrature(theta_i, n_theta, n_phi);
+Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, const AlbedoQuadrature& quadrature) {
+  const std::vector<AlbedoNode> nodes = quadrature.Nodes(wi);
   std::vector<DirectionPair> pairs;
   pairs.reserve(nodes.size());
   for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
@@ -46,6 +149,33 @@ Rgb DirectionalAlbedo(const Brdf& brdf, double theta_i, int n_theta, int n_phi) 
     for (int c = 0; c < 3; ++c) albedo[c] += nodes[n].weight * values[n][c];
   }
   return albedo;
+}
+
+Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta, int n_phi) {
+  return DirectionalAlbedo(brdf, wi, AlbedoQuadrature(n_theta, n_phi));
+}
+
+std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid) {
+  const AlbedoQuadrature coarse(64, 32), fine = AlbedoQuadrature::OnMerlRows(grid.n_theta, grid.n_phi);
+  const int azimuths = brdf.IsIsotropic() ? 1 : grid.azimuths;
+  std::vector<IncidentAlbedo> profile(std::size_t{1} * azimuths * grid.angles);
+  tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
+    const int row = static_cast<int>(n) / grid.angles;
+    const auto [theta_i, solid_angle] = StratumOf(static_cast<int>(n) % grid.angles, grid.angles);
+    const double phi_i = 2.0 * kPi * row / azimuths;
+    const Vec3 wi = FromSpherical(theta_i, phi_i);
+    Rgb albedo = DirectionalAlbedo(brdf, wi, coarse);
+    if (!(Largest(albedo) < grid.refine_above)) albedo = DirectionalAlbedo(brdf, wi, fine);
+    profile[n] = {theta_i, phi_i, solid_angle / azimuths, albedo};
+  });
+  std::vector<std::vector<IncidentAlbedo>> maxima(azimuths);
+  tbb::parallel_for(0, azimuths, [&](int row) {
+    maxima[row] = LocalMaxima(brdf, grid, fine,
+                              std::span(profile).subspan(std::size_t{1} * row * grid.angles,
+                                                         grid.angles));
+  });
+  for (const auto& row : maxima) profile.insert(profile.end(), row.begin(), row.end());
+  return profile;
 }
 
 }  // namespace pbnbrdf

@@ -29,8 +29,7 @@ std::size_t BinIndex(int theta_h, int theta_d, int phi_d) {
 }
 
 RusinkiewiczAngles CornerAngles(int theta_h, int theta_d, int phi_d) {
-  const double u = double(theta_h) / MerlBrdf::kThetaH;
-  return {.theta_h = 0.5 * kPi * u * u,
+  return {.theta_h = MerlBrdf::RowAngle(theta_h),
           .theta_d = 0.5 * kPi * theta_d / MerlBrdf::kThetaD,
           .phi_d = kPi * phi_d / MerlBrdf::kPhiD};
 }
@@ -66,6 +65,11 @@ TablePosition Locate(const DirectionPair& pair) {
 }
 
 }  // namespace
+
+double MerlBrdf::RowAngle(int row) {
+  const double u = double(row) / kThetaH;
+  return 0.5 * kPi * u * u;
+}
 
 MerlBrdf::MerlBrdf(std::vector<double> planes) : planes_(std::move(planes)) {
   for (std::size_t bin = 0; bin < kBins; ++bin) valid_bins_ += IsValid(bin);

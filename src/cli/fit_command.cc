@@ -65,7 +65,7 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
   measures["samples_used"] = summary.samples;
-  measures["energy_stage"] = summary.energy_stage;
+  measures["energy_rounds"] = summary.energy.rounds;
   measures["precision_limited"] = summary.precision_limited;
   measures["seconds"] = summary.seconds;
   measures["seed"] = problem.seed;

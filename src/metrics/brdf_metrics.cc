@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/brdf/sampling.h"
 
@@ -85,18 +84,16 @@ Reciprocity MeasureReciprocity(const Brdf& brdf) {
           .hcl = MeanDifference(brdf, 128, 256, 1, 0.0, [](double x) { return std::abs(x); })};
 }
 
-Energy MeasureEnergy(const Brdf& brdf) {
-  constexpr int kAngles = 90;
-  constexpr double kStep = 0.5 * kPi / kAngles;
-  std::vector<Rgb> albedos(kAngles);
-  tbb::parallel_for(0, kAngles,
-                    [&](int k) { albedos[k] = DirectionalAlbedo(brdf, (k + 0.5) * kStep); });
+Energy MeasureEnergy(const Brdf& brdf, const AlbedoGrid& grid) {
   Energy energy;
-  for (int k = 0; k < kAngles; ++k) {
-    const double solid_angle = 2.0 * kPi * std::sin((k + 0.5) * kStep) * kStep;
-    for (double a : albedos[k]) {
-      energy.max_directional_albedo = std::max(energy.max_directional_albedo, a);
-      energy.eal += solid_angle * std::max(0.0, a - 1.0) / 3.0;
+  for (const IncidentAlbedo& at : AlbedoProfile(brdf, grid)) {
+    for (int c = 0; c < 3; ++c) {
+      energy.eal += at.solid_angle * std::max(0.0, at.albedo[c] - 1.0) / 3.0;
+      if (!(at.albedo[c] > energy.max_directional_albedo)) continue;
+      energy.max_directional_albedo = at.albedo[c];
+      energy.theta_i = at.theta_i;
+      energy.phi_i = at.phi_i;
+      energy.channel = c;
     }
   }
   return energy;

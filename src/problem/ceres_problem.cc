@@ -3,8 +3,6 @@
 #include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 
-#include <numbers>
-
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/problem/condensed_cost_function.h"
 #include "pbnbrdf/problem/energy_strata.h"
@@ -49,22 +47,21 @@ void AddPointTerm(const FitProblem& problem, std::span<const BrdfSample> samples
   }
 }
 
-void AddEnergyTerm(const FitProblem& problem, const std::vector<double*>& blocks,
-                   ceres::Problem* ceres_problem) {
+void AddEnergyTerm(const FitProblem& problem, std::span<const EnergyStratum> strata,
+                   const std::vector<double*>& blocks, ceres::Problem* ceres_problem) {
   if (problem.energy_weight == 0.0) return;
   const NetworkShape shape = problem.Shape();
-  for (int k = 0; k < problem.energy_strata; ++k) {
+  for (std::size_t k = 0; k < strata.size(); ++k) {
+    const EnergyStratum& stratum = strata[k];
     std::vector<NetworkResidual<EnergyResidual>::Input> inputs;
     std::vector<double> node_weights;
-    for (const AlbedoNode& node : AlbedoQuadrature(StratumAngle(k, problem.energy_strata),
-                                                   problem.energy_theta, problem.energy_phi)) {
+    for (const AlbedoNode& node : QuadratureOfStratum(problem, k).Nodes(stratum.wi)) {
       inputs.push_back(Encode(shape.encoding(), node.pair));
       node_weights.push_back(node.weight);
     }
-    const double solid_angle = 2.0 * std::numbers::pi / problem.energy_strata;
-    ceres_problem->AddResidualBlock(
-        MakeAutodiff(shape, std::move(inputs), EnergyResidual(solid_angle, node_weights)),
-        Weighted(nullptr, problem.energy_weight), blocks);
+    EnergyResidual residual(stratum.solid_angle, std::move(node_weights), stratum.limit);
+    ceres_problem->AddResidualBlock(MakeAutodiff(shape, std::move(inputs), std::move(residual)),
+                                    Weighted(nullptr, problem.energy_weight), blocks);
   }
 }
 
@@ -75,13 +72,14 @@ void AddCondensed(Objective* objective, double* weights, ceres::Problem* ceres_p
                                   objective->shape().Blocks(weights));
 }
 
-void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples, double* weights,
+void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples,
+                 std::span<const EnergyStratum> strata, double* weights,
                  ceres::Problem* ceres_problem) {
   const std::vector<double*> blocks = problem.Shape().Blocks(weights);
   AddPointTerm<LogResidual>(problem, samples, problem.log_weight, blocks, ceres_problem);
   AddPointTerm<ChromaticityResidual>(problem, samples, problem.chromaticity_weight, blocks,
                                      ceres_problem);
-  AddEnergyTerm(problem, blocks, ceres_problem);
+  AddEnergyTerm(problem, strata, blocks, ceres_problem);
 }
 
 }  // namespace pbnbrdf

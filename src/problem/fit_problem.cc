@@ -44,6 +44,7 @@ void FitProblem::Validate() const {
   if (!(growth > 1.0) || !std::isfinite(growth))
     Fail("growth = ", growth, "; must be finite and > 1");
   CheckCount("energy_strata", energy_strata, 1, 1024);
+  CheckCount("energy_azimuths", energy_azimuths, 1, 1024);
   CheckCount("energy_theta", energy_theta, 2, 1024);
   CheckCount("energy_phi", energy_phi, 2, 1024);
 }

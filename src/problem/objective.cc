@@ -8,7 +8,7 @@
 
 #include "pbnbrdf/network/batched_mlp.h"
 #include "pbnbrdf/network/encoded_batches.h"
-#include "pbnbrdf/problem/energy_strata.h"
+#include "pbnbrdf/problem/energy_term.h"
 #include "pbnbrdf/problem/normal_equations.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
 #include "point_terms.h"
@@ -31,11 +31,12 @@ std::size_t PartitionCount(std::size_t batches) {
 template <typename T>
 class BatchedObjective final : public Objective {
  public:
-  BatchedObjective(const FitProblem& problem, std::span<const BrdfSample> samples)
+  BatchedObjective(const FitProblem& problem, std::span<const BrdfSample> samples,
+                   std::span<const EnergyStratum> strata)
       : shape_(problem.Shape()),
         log_(problem.log_weight, problem, samples),
         chromaticity_(problem.chromaticity_weight, problem, samples),
-        energy_(problem) {
+        energy_(problem, strata) {
     inputs_.Reserve(samples.size());
     for (const BrdfSample& s : samples) inputs_.Add(Encode(shape_.encoding(), s.pair));
     all_batches_.resize(inputs_.num_batches());
@@ -86,6 +87,8 @@ class BatchedObjective final : public Objective {
     });
     return sum / static_cast<double>(kChannels * inputs_.size());
   }
+
+  const EnergyWork& energy_work() const override { return energy_.work(); }
 
   using Objective::Linearize;
   bool Linearize(const double* weights, CurvaturePart part, Linearization* at) override {
@@ -288,7 +291,7 @@ class BatchedObjective final : public Objective {
   EncodedBatches<T> inputs_;
   LogTerm log_;
   PointTerm<ChromaticityResidual> chromaticity_;
-  EnergyStrata<T> energy_;
+  EnergyTerm<T> energy_;
   std::vector<std::size_t> all_batches_;
   std::vector<std::unique_ptr<CurvatureWorker>> curvature_workers_;  // one a partition
   std::vector<std::unique_ptr<GradientWorker>> gradient_workers_;
@@ -297,11 +300,17 @@ class BatchedObjective final : public Objective {
 }  // namespace
 
 std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
-                                         std::span<const BrdfSample> samples) {
+                                         std::span<const BrdfSample> samples,
+                                         std::span<const EnergyStratum> strata) {
   if (problem.precision == Precision::kDouble) {
-    return std::make_unique<BatchedObjective<double>>(problem, samples);
+    return std::make_unique<BatchedObjective<double>>(problem, samples, strata);
   }
-  return std::make_unique<BatchedObjective<float>>(problem, samples);
+  return std::make_unique<BatchedObjective<float>>(problem, samples, strata);
+}
+
+std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
+                                         std::span<const BrdfSample> samples) {
+  return MakeObjective(problem, samples, EqualStrata(problem));
 }
 
 }  // namespace pbnbrdf

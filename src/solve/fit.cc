@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "energy_conservation.h"
 #include "pace.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/solve/adam.h"
 #include "pbnbrdf/solve/ceres_solvers.h"
 #include "pbnbrdf/solve/tiny_lm.h"
@@ -34,6 +34,11 @@ constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
 constexpr std::size_t kCurvatureGrowth = 4;
 constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
 
+// Of the energy term's stages after the first.
+constexpr int kMostEnergyRounds = 16, kRoundIterations = 40;
+constexpr double kSmallCorrection = 0.02;  // of the mean absolute log error
+static const double kEnergyShare = getenv("KES")?atof(getenv("KES")):1.0;
+
 class Fitter {
  public:
   Fitter(const Brdf& material, const FitProblem& problem, const FitOptions& options)
@@ -42,7 +47,8 @@ class Fitter {
         stream_(material, SampleSet::kTraining, problem.sampling, problem.seed),
         validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling,
                                         kValidationSamples, problem.seed + kValidationSeed)),
-        curvature_samples_(options.curvature_samples) {
+        curvature_samples_(options.curvature_samples),
+        strata_(EqualStrata(problem)) {
     const bool grows = options.solver != Solver::kAdam;  // which draws its own few
     stream_.Draw(grows ? std::min(problem.first_samples, most_samples_) : most_samples_, &samples_);
     weights_ = options.initial_weights;
@@ -72,9 +78,9 @@ class Fitter {
   }
 
   // Minimises from where the last stage ended, on few samples at first and then on more and more.
-  void RunStages(const FitProblem& problem) {
-    iterations_left_ = options_.max_iterations;
-    validation_ = MakeObjective(problem, validation_samples_);
+  void RunStages(const FitProblem& problem, int max_iterations) {
+    iterations_left_ = max_iterations;
+    validation_ = MakeObjective(problem, validation_samples_, strata_);
     while (true) {
       const End end = RunStage(problem);
       if (iterations_left_ == 0 || !MayContinue()) return;
@@ -88,6 +94,33 @@ class Fitter {
         return;
       }
     }
+  }
+
+  // Brings all directional albedos below 1, by the energy term and what it leaves undone by
+  // lowering the network as a whole. Each round the term starts with a weight at which it costs what
+  // the rest does: where its square outweighs the rest by far, the fit gives up whole lobes.
+  void ConserveEnergy(FitProblem problem) {
+    EnergySummary& energy = summary_.energy;
+    EnergyConstraints constraints(problem);
+    energy.first_max_albedo = energy.max_albedo = constraints.Measure(weights_);
+    double weight=1e9;
+    const bool has_term = options_.solver != Solver::kAdam;
+    while (has_term && energy.rounds < kMostEnergyRounds && MayContinue()) {
+      const double error = MakeObjective(problem, validation_samples_)->MeanAbsLogError(weights_.data());
+      if (CorrectionOf(energy.max_albedo) < kSmallCorrection * error) break;
+      constraints.Exchange();
+      strata_ = constraints.strata();
+      weight = std::min(weight*10, (energy.rounds?30:1)*BalancedEnergyWeight(problem)); problem.energy_weight = weight;
+      RunStages(problem, std::min(kRoundIterations, options_.max_iterations));
+      energy.max_albedo = constraints.Measure(weights_);
+      ++energy.rounds;
+      fprintf(stderr,"round %d w %g strata %zu max %.8f err %.6f it %d t %.2f\n", energy.rounds, problem.energy_weight, strata_.size(), energy.max_albedo, heldout_?heldout_->MeanAbsLogError(weights_.data()):0, summary_.iterations, stopwatch_.Seconds());
+    }
+    energy.strata = strata_.size();
+    if (energy.max_albedo <= kMostAlbedo) return;
+    energy.correction = LowerToConserve(problem.Shape(), &weights_);
+    energy.max_albedo = constraints.Measure(weights_);
+    fprintf(stderr,"corr %g max %.8f err %.6f t %.2f\n", energy.correction, energy.max_albedo, heldout_?heldout_->MeanAbsLogError(weights_.data()):0, stopwatch_.Seconds());
   }
 
   // Whether neither the user nor the clock has ended the fit.
@@ -108,6 +141,15 @@ class Fitter {
 
  private:
   enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };
+
+  // With which the energy term costs as much as all else.
+  double BalancedEnergyWeight(FitProblem problem) const {
+    problem.energy_weight = 0.0;
+    const double rest = MakeObjective(problem, validation_samples_)->Cost(weights_.data());
+    problem.energy_weight = 1.0;
+    const double all = MakeObjective(problem, validation_samples_, strata_)->Cost(weights_.data());
+    return all > rest ? kEnergyShare*rest / (all - rest) : 1.0;
+  }
 
   // What it ended for; kNone: for the solver's own reasons.
   End RunStage(const FitProblem& problem) {
@@ -182,13 +224,13 @@ class Fitter {
                        const StageOptions& stage) {
     ceres::Problem ceres_problem;
     if (options_.jacobian == JacobianMethod::kAutodiff) {
-      AddAutodiff(problem, samples, weights_.data(), &ceres_problem);
+      AddAutodiff(problem, samples, strata_, weights_.data(), &ceres_problem);
       return MinimizeCeresLm(&ceres_problem, stage);
     }
     if (options_.solver == Solver::kAdam) {
       return MinimizeAdam(problem, samples, options_.adam, stage, &weights_);
     }
-    const std::unique_ptr<Objective> objective = MakeObjective(problem, samples);
+    const std::unique_ptr<Objective> objective = MakeObjective(problem, samples, strata_);
     switch (options_.solver) {
       case Solver::kTinyLm:
         return MinimizeTinyLm(objective.get(), stage, &weights_);
@@ -221,6 +263,7 @@ class Fitter {
   SampleStream stream_;
   std::vector<BrdfSample> samples_, validation_samples_;
   std::size_t curvature_samples_;
+  std::vector<EnergyStratum> strata_;
   std::vector<double> weights_;
   std::unique_ptr<Objective> validation_, heldout_;
   FitSummary summary_;
@@ -231,20 +274,16 @@ class Fitter {
 // by orders of magnitude and leads astray, and most materials never need it.
 Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   Fitter fitter(material, problem, options);
-  if (options.solver == Solver::kAdam) {  // all terms from the start, as published
-    fitter.RunStages(problem);
-    return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish(problem)};
-  }
   FitProblem without_energy = problem;
   without_energy.energy_weight = 0.0;
-  if (options.starts > 1) fitter.RunStarts(without_energy);
-  fitter.RunStages(without_energy);
-  const bool gains_energy = problem.energy_weight > 0.0 &&
-                            EnergyStrata<double>(problem).Cost(fitter.weights().data()) > 0.0;
-  if (gains_energy && fitter.MayContinue()) fitter.RunStages(problem);
-  FitSummary summary = fitter.Finish(without_energy);
-  summary.energy_stage = gains_energy;
-  return {NeuralBrdf(problem.Shape(), fitter.weights()), summary};
+  if (options.solver == Solver::kAdam) {  // all terms from the start, as published
+    fitter.RunStages(problem, options.max_iterations);
+  } else {
+    if (options.starts > 1) fitter.RunStarts(without_energy);
+    fitter.RunStages(without_energy, options.max_iterations);
+  }
+  if (problem.energy_weight > 0.0) fitter.ConserveEnergy(problem);
+  return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish(without_energy)};
 }
 
 }  // namespace

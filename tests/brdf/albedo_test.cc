@@ -1,68 +1,174 @@
 #include "pbnbrdf/brdf/albedo.h"
 
+#include <functional>
+
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/analytic.h"
 
 namespace pbnbrdf {
 namespace {
 
-// The albedo of a microfacet lobe by a grid over the distribution of facet normals: u uniform with
-// tan^2 theta_h = alpha^2 u / (1 - u), so that the sharp D drops out. Independent of
-// AlbedoQuadrature.
-double GgxAlbedo(const Brdf& brdf, double alpha, double theta_i) {
-  constexpr int kU = 2000, kPhi = 1000;
+constexpr double kDegree = kPi / 180.0;
+
+// Simpson's rule on halves of halves until they agree with the whole.
+double Adapt(const std::function<double(double)>& f, double a, double b, double fa, double fm,
+             double fb, double tolerance, int depth) {
+  const double m = 0.5 * (a + b), flm = f(0.5 * (a + m)), frm = f(0.5 * (m + b));
+  const double whole = (b - a) / 6.0 * (fa + 4.0 * fm + fb);
+  const double halves = (b - a) / 12.0 * (fa + 4.0 * flm + 2.0 * fm + 4.0 * frm + fb);
+  if (depth == 0 || (depth < 16 && std::abs(halves - whole) < 15.0 * tolerance)) {
+    return halves + (halves - whole) / 15.0;
+  }
+  return Adapt(f, a, m, fa, flm, fm, 0.5 * tolerance, depth - 1) +
+         Adapt(f, m, b, fm, frm, fb, 0.5 * tolerance, depth - 1);
+}
+
+double AdaptiveSimpson(const std::function<double(double)>& f, double a, double b,
+                       double tolerance) {
+  return Adapt(f, a, b, f(a), f(0.5 * (a + b)), f(b), tolerance, /*depth=*/20);
+}
+
+// The albedo of a lobe about the half vector, over theta_h in pieces that start about `width` and
+// grow, and over phi_h within. Shares nothing with AlbedoQuadrature but dwo = 4 (wi.h) dwh.
+double AdaptiveAlbedo(const Brdf& brdf, double width, double theta_i) {
+  constexpr double kTolerance = 2e-6;
   const Vec3 wi = FromSpherical(theta_i, 0.0);
+  const auto at = [&](double theta_h, double phi) {
+    const Vec3 h = FromSpherical(theta_h, phi);
+    const double cos_d = Dot(wi, h);
+    const DirectionPair pair = {wi, 2.0 * cos_d * h - wi};
+    if (cos_d <= 0.0 || !pair.AboveHorizon()) return 0.0;
+    Rgb value;
+    brdf.Evaluate({&pair, 1}, {&value, 1});
+    return value[0] * pair.wo.z * 4.0 * cos_d * std::sin(theta_h);
+  };
   double sum = 0.0;
-  for (int a = 0; a < kU; ++a) {
-    const double u = (a + 0.5) / kU;
-    const double tan2 = alpha * alpha * u / (1.0 - u);
-    const double cos_h = 1.0 / std::sqrt(1.0 + tan2);
-    const double slope = alpha * alpha + tan2;
-    const double d = alpha * alpha / (kPi * std::pow(cos_h, 4) * slope * slope);
-    for (int b = 0; b < kPhi; ++b) {
-      const Vec3 h = FromSpherical(std::acos(cos_h), 2.0 * kPi * (b + 0.5) / kPhi);
-      const double cos_d = Dot(wi, h);
-      const DirectionPair pair = {wi, 2.0 * cos_d * h - wi};
-      if (cos_d <= 0.0 || !pair.AboveHorizon()) continue;
-      Rgb value;
-      brdf.Evaluate({&pair, 1}, {&value, 1});
-      sum += value[0] * pair.wo.z * 4.0 * cos_d / (d * cos_h);
+  for (double from = 0.0, to = 0.5 * width; from < 0.5 * kPi; from = to, to *= 3.0) {
+    const double end = std::min(to, 0.5 * kPi);
+    const auto ring = [&](double theta_h) {
+      const auto on_ring = [&](double phi) { return at(theta_h, phi); };
+      const double tolerance = kTolerance / (end - from);  // of a density over theta_h
+      return 2.0 * (AdaptiveSimpson(on_ring, 0.0, 0.5 * kPi, tolerance) +
+                    AdaptiveSimpson(on_ring, 0.5 * kPi, kPi, tolerance));
+    };
+    sum += AdaptiveSimpson(ring, from, end, kTolerance);
+  }
+  return sum;
+}
+
+struct Lobe {
+  std::string name;
+  std::unique_ptr<Brdf> brdf;
+  double width;  // radians
+};
+
+std::vector<Lobe> Lobes() {
+  const Rgb white = {1.0, 1.0, 1.0};
+  std::vector<Lobe> lobes;
+  lobes.push_back({"lambert", std::make_unique<LambertBrdf>(white), 1.0});
+  for (double width : {1.0, 0.3, 0.03, 0.1 * kDegree}) {
+    lobes.push_back({"ggx", std::make_unique<GgxBrdf>(Rgb{0.9, 0.9, 0.9}, width), width});
+    lobes.push_back({"ward", std::make_unique<WardBrdf>(Rgb{}, white, width), width});
+  }
+  return lobes;
+}
+
+TEST(AlbedoQuadrature, Is64x32NodesWithin1e3OfAnAdaptiveIntegral) {
+  double worst = 0.0;
+  for (const Lobe& lobe : Lobes()) {
+    for (double degrees : {0.0, 45.0, 80.0, 88.0, 89.5}) {
+      const double theta_i = degrees * kDegree;
+      const double exact = AdaptiveAlbedo(*lobe.brdf, lobe.width, theta_i);
+      const double albedo =
+          DirectionalAlbedo(*lobe.brdf, FromSpherical(theta_i, 0.0), 64, 32)[0];
+      EXPECT_NEAR(albedo, exact, 1e-3 * exact)
+          << lobe.name << " " << lobe.width << " at " << degrees;
+      worst = std::max(worst, std::abs(albedo / exact - 1.0));
     }
   }
-  return sum / (double{kU} * kPhi);
+  RecordProperty("worst_relative_error", std::to_string(worst));
 }
 
-TEST(DirectionalAlbedo, LambertGivesRhoAtEveryAngle) {
-  const LambertBrdf lambert({0.99, 0.5, 0.0});
-  for (double degrees : {0.0, 20.0, 45.0, 70.0, 85.0, 89.0, 89.5}) {
-    const Rgb albedo = DirectionalAlbedo(lambert, degrees * kPi / 180, 64, 32);
-    EXPECT_NEAR(albedo[0], 0.99, 1e-3) << degrees;
-    EXPECT_NEAR(albedo[1], 0.50, 1e-3) << degrees;
-    EXPECT_EQ(albedo[2], 0.0);
+TEST(AlbedoQuadrature, FinerNodesAreWithin2e5OfAnAdaptiveIntegral) {
+  for (const Lobe& lobe : Lobes()) {
+    for (double degrees : {0.0, 80.0, 89.5}) {
+      const double theta_i = degrees * kDegree;
+      const double exact = AdaptiveAlbedo(*lobe.brdf, lobe.width, theta_i);
+      EXPECT_NEAR(DirectionalAlbedo(*lobe.brdf, FromSpherical(theta_i, 0.0), 160, 96)[0], exact,
+                  2e-5)
+          << lobe.name << " " << lobe.width << " at " << degrees;
+    }
   }
 }
 
-TEST(DirectionalAlbedo, SharpGgxAgreesWithAnIndependentIntegration) {
-  constexpr double kAlpha = 0.01;
-  const GgxBrdf metal({0.8, 0.8, 0.8}, kAlpha);
-  for (double degrees : {0.0, 30.0, 60.0, 80.0}) {
-    const double theta_i = degrees * kPi / 180;
-    EXPECT_NEAR(DirectionalAlbedo(metal, theta_i, 64, 32)[0], GgxAlbedo(metal, kAlpha, theta_i),
-                1e-3)
-        << degrees;
+TEST(AlbedoQuadrature, TurnsWithTheIncidentDirection) {
+  const GgxBrdf metal({0.8, 0.7, 0.6}, 0.3);
+  for (double phi_i : {0.5, 2.0, -3.0}) {
+    const Rgb turned = DirectionalAlbedo(metal, FromSpherical(0.9, phi_i));
+    const Rgb straight = DirectionalAlbedo(metal, FromSpherical(0.9, 0.0));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(turned[c], straight[c], 1e-12);
   }
 }
 
 TEST(AlbedoQuadrature, NodesAreAboveTheHorizonAndCoverTheHemisphere) {
-  for (double theta_i : {0.0, 0.7, 1.5}) {
+  for (double theta_i : {0.0, 0.7, 1.5, 0.5 * kPi - 1e-6}) {
     double projected_solid_angle = 0.0;
-    for (const AlbedoNode& node : AlbedoQuadrature(theta_i, 64, 32)) {
+    for (const AlbedoNode& node : AlbedoQuadrature(64, 32).Nodes(FromSpherical(theta_i, 0.0))) {
       EXPECT_TRUE(node.pair.AboveHorizon());
       EXPECT_GT(node.weight, 0.0);
       projected_solid_angle += node.weight;
     }
     EXPECT_NEAR(projected_solid_angle, kPi, 1e-3 * kPi);
   }
+}
+
+TEST(GaussLegendre, IntegratesPolynomialsExactly) {
+  for (int n : {1, 2, 3, 16, 64, 255}) {
+    const GaussLegendre rule(n);
+    for (int power = 0; power < 2 * n; power += 1 + n / 4) {
+      double sum = 0.0;
+      for (int k = 0; k < n; ++k) sum += rule.weights[k] * std::pow(rule.nodes[k], power);
+      EXPECT_NEAR(sum, 1.0 / (power + 1), 1e-13) << n << " " << power;
+    }
+  }
+}
+
+// Diffuse, with an albedo that peaks sharply at theta_i = 0.6123.
+class PeakedBrdf final : public PointwiseBrdf {
+ public:
+  static double Albedo(double theta_i) {
+    return 1.0 + 0.1 * std::exp(-1000.0 * (theta_i - 0.6123) * (theta_i - 0.6123));
+  }
+  std::string Description() const override { return "peaked"; }
+
+ protected:
+  Rgb Value(const DirectionPair& pair) const override {
+    const double f = Albedo(std::acos(pair.wi.z)) / kPi;
+    return {f, f, f};
+  }
+};
+
+TEST(AlbedoProfile, FindsTheMaximumBetweenItsAngles) {
+  AlbedoGrid grid;
+  grid.angles = 150;
+  double largest = 0.0, largest_of_grid = 0.0, solid_angle = 0.0;
+  for (const IncidentAlbedo& at : AlbedoProfile(PeakedBrdf(), grid)) {
+    EXPECT_NEAR(at.albedo[0], PeakedBrdf::Albedo(at.theta_i), 1e-5);
+    largest = std::max(largest, at.albedo[0]);
+    if (at.solid_angle > 0.0) largest_of_grid = std::max(largest_of_grid, at.albedo[0]);
+    solid_angle += at.solid_angle;
+  }
+  EXPECT_NEAR(largest, 1.1, 3e-5);  // the vertex of a parabola through three angles
+  EXPECT_LT(largest_of_grid, 1.1 - 1e-4);
+  EXPECT_NEAR(solid_angle, 2.0 * kPi, 1e-3);
+}
+
+TEST(AlbedoProfile, ReachesTheHorizon) {
+  const auto profile = AlbedoProfile(LambertBrdf({0.5, 0.5, 0.5}), AlbedoGrid{});
+  double steepest = 0.0;
+  for (const IncidentAlbedo& at : profile) steepest = std::max(steepest, at.theta_i);
+  EXPECT_LT(0.5 * kPi - steepest, 1e-4 * kDegree);
+  EXPECT_LT(steepest, 0.5 * kPi);
 }
 
 }  // namespace

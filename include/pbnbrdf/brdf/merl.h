@@ -24,6 +24,9 @@ class MerlBrdf final : public Brdf {
   static constexpr int kThetaH = 90, kThetaD = 90, kPhiD = 180;
   static constexpr std::size_t kBins = std::size_t{kThetaH} * kThetaD * kPhiD;
 
+  // theta_h of a row, 0 to kThetaH, radians.
+  static double RowAngle(int row);
+
   // Throws Error if the file is missing, has other dimensions or another length, or holds values
   // that aren't finite or no valid bin.
   static MerlBrdf Read(const std::string& path);

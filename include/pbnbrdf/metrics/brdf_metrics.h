@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "pbnbrdf/brdf/brdf.h"
+#include "pbnbrdf/brdf/albedo.h"
 
 namespace pbnbrdf {
 
@@ -29,12 +29,18 @@ struct Reciprocity {
 
 Reciprocity MeasureReciprocity(const Brdf& brdf);
 
-// From the directional albedos at incident angles 0.5, 1.5, ..., 89.5 degrees.
+// From the directional albedos at incident directions all over the hemisphere (brdf/albedo.h).
 struct Energy {
-  double max_directional_albedo = 0.0;  // over angles and channels
+  double max_directional_albedo = 0.0;  // over incident directions and channels
+  double theta_i = 0.0, phi_i = 0.0;    // where it is, radians
+  int channel = 0;                      // and in which: 0, 1, 2
   double eal = 0.0;                     // eq. 5, mean over channels, sr
+
+  // Whether no directional albedo is above 1, as far as these quadratures tell.
+  bool Conserved() const { return max_directional_albedo <= 1.0 + kTolerance; }
+  static constexpr double kTolerance = 1e-6;
 };
 
-Energy MeasureEnergy(const Brdf& brdf);
+Energy MeasureEnergy(const Brdf& brdf, const AlbedoGrid& grid = {});
 
 }  // namespace pbnbrdf

@@ -33,6 +33,9 @@ inline constexpr NameTable<Encoding, 4> kEncodings = {{{"cartesian", Encoding::k
 
 inline constexpr int kEncodedSize = 6;
 
+// Whether networks behind it don't change when wi and wo turn together about the normal.
+constexpr bool IsIsotropic(Encoding) { return true; }
+
 // All but kCartesian give the same bits for a pair and for the pair with wi and wo
 // exchanged, hence any network behind them is reciprocal exactly.
 std::array<double, kEncodedSize> Encode(Encoding encoding, const DirectionPair& pair);

@@ -21,7 +21,8 @@ inline constexpr NameTable<JacobianMethod, 2> kJacobianMethods = {
 // `ceres_problem`.
 void AddCondensed(Objective* objective, double* weights, ceres::Problem* ceres_problem);
 
-void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples, double* weights,
+void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples,
+                 std::span<const EnergyStratum> strata, double* weights,
                  ceres::Problem* ceres_problem);
 
 }  // namespace pbnbrdf

@@ -4,7 +4,7 @@
 //   1/2 sum over terms t of weight_t * mean over samples of rho(|r_t|^2)  +  1/2 weight_e |r_e|^2,
 //
 // r_t the residuals of the log and chromaticity terms (eqs. 6, 7) at a sample, rho the robust loss,
-// r_e those of the energy term (eq. 5) over all strata of incident angles. Loss::kAbsolute stands
+// r_e those of the energy term (eq. 5) over all strata of incident directions. Loss::kAbsolute stands
 // for the papers' own sum instead, which isn't one of squares:
 //
 //   sum over terms t of weight_t * mean over samples and channels of |r_t|  +  weight_e EAL,
@@ -80,11 +80,13 @@ struct FitProblem {
   double growth = 3.0;     // > 1
   std::uint64_t seed = 1;  // of the samples and of the initial weights
 
-  // The energy term's quadrature: strata of incident angles, equal in solid angle, and nodes for
-  // each.
+  // The energy term: strata of theta_i, and of phi_i for anisotropic encodings, equal in solid
+  // angle; the nodes of the quadrature for each of them (brdf/albedo.h).
   int energy_strata = 16;
+  int energy_azimuths = 8;
   int energy_theta = 64;
   int energy_phi = 32;
+  bool energy_skip = true;  // to leave out strata far below 1 (energy_term.h)
 
   Precision precision = Precision::kSingle;
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/problem/energy_strata.h"
+#include "pbnbrdf/problem/energy_term.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "pbnbrdf/problem/linearization.h"
 
@@ -37,10 +39,18 @@ class Objective {
 
   // Mean over samples and channels of |log1p(f cos_i) - log1p(max(0, f^) cos_i)|.
   virtual double MeanAbsLogError(const double* weights) = 0;
+
+  // Of the energy term so far.
+  virtual const EnergyWork& energy_work() const = 0;
 };
 
-// `problem` must be valid. Work is shared among the threads that TBB grants; the result doesn't
-// depend on their number.
+// `problem` must be valid. strata: of the energy term. Work is shared among the threads that TBB
+// grants; the result doesn't depend on their number.
+std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
+                                         std::span<const BrdfSample> samples,
+                                         std::span<const EnergyStratum> strata);
+
+// With EqualStrata.
 std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
                                          std::span<const BrdfSample> samples);
 

@@ -1,4 +1,4 @@
-// energy_residual.h: the energy amplification term, eq. 5, of one stratum of incident angles.
+// energy_residual.h: the energy amplification term, eq. 5, of one stratum of incident directions.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace pbnbrdf {
 
-// r_c = sqrt(w) max(0, a_c - 1),  a_c = sum over nodes m of v_m max(0, f^_c,m),  c = R, G, B,
+// r_c = sqrt(w) max(0, a_c - l_c),  a_c = sum over nodes m of v_m max(0, f^_c,m),  c = R, G, B,
 // the directional albedo by quadrature;  f^_c,m = expm1(z_c,m), clamped as it is when evaluated.
 //   z         T[M][3], the network's outputs at the nodes.
 //   residuals T[3], unitless.
@@ -17,8 +17,10 @@ class EnergyResidual {
   static constexpr int kNumResiduals = 3;
 
   // solid_angle: w, of the stratum, sr. node_weights: v_m > 0, cosine included (brdf/albedo.h).
-  EnergyResidual(double solid_angle, std::vector<double> node_weights)
-      : sqrt_w_(std::sqrt(solid_angle)), v_(std::move(node_weights)) {}
+  // limit: l, the largest albedo that costs nothing; 1 in eq. 5.
+  EnergyResidual(double solid_angle, std::vector<double> node_weights,
+                 const Rgb& limit = {1.0, 1.0, 1.0})
+      : sqrt_w_(std::sqrt(solid_angle)), v_(std::move(node_weights)), limit_(limit) {}
 
   std::size_t num_nodes() const { return v_.size(); }
 
@@ -31,13 +33,15 @@ class EnergyResidual {
       }
     }
     for (int c = 0; c < 3; ++c) {
-      residuals[c] = albedo[c] > T(1.0) ? sqrt_w_ * (albedo[c] - T(1.0)) : T(0.0);
+      const T excess = albedo[c] - limit_[c];
+      residuals[c] = excess > T(0.0) ? sqrt_w_ * excess : T(0.0);
     }
   }
 
  private:
   double sqrt_w_;
   std::vector<double> v_;
+  Rgb limit_;
 };
 
 }  // namespace pbnbrdf

@@ -56,11 +56,21 @@ struct FitOptions {
   std::function<bool(const FitProgress&)> on_iteration;
 };
 
+// What the energy term did, and how the fit came to conserve energy.
+struct EnergySummary {
+  double first_max_albedo = 0.0;  // largest directional albedo of the fit without the term
+  double max_albedo = 0.0;        // and in the end, by the fit's own check
+  int rounds = 0;                 // stages with the term; 0: it wasn't needed
+  std::size_t strata = 0;         // of incident directions, in the last of them
+  double correction = 0.0;        // what log(1 + f) was lowered by in the end, at most
+  EnergyWork work;
+};
+
 struct FitSummary {
   double final_cost = 0.0;    // fit_problem.h
   int iterations = 0;         // of all stages
   std::size_t samples = 0;    // that the fit had grown to
-  bool energy_stage = false;  // whether an albedo above 1 called for a stage with the energy term
+  EnergySummary energy;       // of a fit with the energy term
   // Of single precision only: rounding changes the final cost by more than a hundredth, so that
   // double precision would have gone further.
   bool precision_limited = false;

@@ -1,0 +1,53 @@
+// energy_conservation.h: how a fit ends with no directional albedo above 1, at any incident
+// direction: infinitely many constraints, of which only those that matter are kept [1].
+//
+// Strata whose albedo is 1 or more, by a quadrature much finer than the term's, get a limit below 1
+// that makes up for what the penalty and the term's own quadrature leave; where an albedo is above 1
+// between strata, another one is added there. What is left in the end is removed exactly.
+//
+// [1] R. Hettich, K. Kortanek. Semi-Infinite Programming: Theory, Methods, and Applications. SIAM
+//     Review 35(3), 1993: exchange methods.
+#pragma once
+
+#include <vector>
+
+#include "pbnbrdf/brdf/albedo.h"
+#include "pbnbrdf/problem/energy_strata.h"
+
+namespace pbnbrdf {
+
+// The largest directional albedo that a fit with the energy term may have by its own check, so that
+// other checks, with their own quadrature errors, find at most 1 + 1e-6.
+inline constexpr double kMostAlbedo = 1.0 - 5e-6;
+
+class EnergyConstraints {
+ public:
+  explicit EnergyConstraints(const FitProblem& problem);
+
+  // Measures the network. Returns its largest directional albedo.
+  double Measure(const std::vector<double>& weights);
+
+  // From what was measured last: adds strata, and moves limits.
+  void Exchange();
+
+  const std::vector<EnergyStratum>& strata() const { return strata_; }
+
+ private:
+  void AddStratum(const IncidentAlbedo& at);
+
+  const FitProblem& problem_;
+  NetworkShape shape_;
+  double solid_angle_;
+  std::vector<EnergyStratum> strata_;
+  std::vector<IncidentAlbedo> profile_;
+};
+
+// About what LowerToConserve lowers log(1 + f) by if the largest directional albedo is so much.
+double CorrectionOf(double max_albedo);
+
+// Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by the
+// least s of each channel with which no directional albedo is above kMostAlbedo. A reciprocal
+// network stays so. Returns the largest s.
+double LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
+
+}  // namespace pbnbrdf
