@@ -201,13 +201,15 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
     keys.push_back(key);
     EXPECT_TRUE(value.is_number()) << key;
   }
-  EXPECT_THAT(keys, testing::UnorderedElementsAre("mean_abs_log_error", "rmse", "hrl", "hcl",
-                                                  "max_directional_albedo", "eal",
-                                                  "chromaticity_error", "parameters", "samples"));
+  EXPECT_THAT(keys, testing::UnorderedElementsAre(
+                        "mean_abs_log_error", "rmse", "hrl", "hcl", "max_directional_albedo", "eal",
+                        "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
+                        "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
   const Result text = Run("eval --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
   EXPECT_THAT(text.out, HasSubstr("Helmholtz reciprocity loss (eq. 8)"));
+  for (const std::string& key : keys) EXPECT_THAT(text.out, HasSubstr(key + " "));
 }
 
 TEST_F(Cli, ANetworkIsAMaterialToo) {
