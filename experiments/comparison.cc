@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/network/open_brdf.h"
 
 namespace pbnbrdf {
 namespace {
@@ -195,6 +197,18 @@ MaterialSource ParseMaterial(const std::string& text) {
     material.name = file.substr(0, file.rfind('.'));
   }
   return material;
+}
+
+std::vector<MaterialSource> ParseMaterials(const std::vector<std::string>& texts) {
+  std::vector<MaterialSource> materials;
+  std::set<std::string> names;
+  for (const std::string& text : texts) {
+    materials.push_back(ParseMaterial(text));
+    const std::string& name = materials.back().name;
+    OpenBrdf(materials.back().source);
+    if (!names.insert(name).second) Fail("material '", text, "': another one is named ", name);
+  }
+  return materials;
 }
 
 Curve ErrorCurve(const std::vector<FitProgress>& trace) {

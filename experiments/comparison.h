@@ -21,6 +21,10 @@ struct MaterialSource {
 
 MaterialSource ParseMaterial(const std::string& text);
 
+// Opens each, so that a mistake shows before the first fit. Throws Error, also if two have the same
+// name.
+std::vector<MaterialSource> ParseMaterials(const std::vector<std::string>& texts);
+
 // One fit of a solver to a material.
 struct FitRecord {
   std::string material, solver, hidden;

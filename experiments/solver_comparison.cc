@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <set>
 
 #include "comparison.h"
 #include "experiment.h"
@@ -130,24 +129,11 @@ void PlanPeer(Plan* plan) {
   if (!plan->has_peer) std::fprintf(stderr, "left out, the peer: %s\n", why_not.c_str());
 }
 
-std::vector<MaterialSource> ParseMaterials(std::vector<std::string> texts) {
-  if (texts.empty()) {
-    texts = {"builtin:ivory-computer-plastic", "builtin:red-satin-plastic", "builtin:satin-gold"};
-  }
-  std::vector<MaterialSource> materials;
-  std::set<std::string> names;
-  for (const std::string& text : texts) {
-    materials.push_back(ParseMaterial(text));
-    const std::string& name = materials.back().name;
-    OpenBrdf(materials.back().source);  // so that a mistake shows before the first fit
-    if (!names.insert(name).second) Fail("material '", text, "': another one is named ", name);
-  }
-  return materials;
-}
-
 Plan MakePlan(const std::vector<std::string>& materials) {
   Plan plan;
-  plan.materials = ParseMaterials(materials);
+  const std::vector<std::string> few = {"builtin:ivory-computer-plastic",
+                                        "builtin:red-satin-plastic", "builtin:satin-gold"};
+  plan.materials = ParseMaterials(materials.empty() ? few : materials);
   for (const std::string& name : Split(FLAGS_solvers, ',')) {
     plan.solvers.emplace_back(name, ParseName(kSettings, "solvers", name));
   }

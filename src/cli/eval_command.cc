@@ -6,7 +6,6 @@
 
 #include "commands.h"
 #include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "report.h"
 #include "shared_flags.h"
 
@@ -22,13 +21,13 @@ constexpr std::size_t kMostSamples = 100'000'000;
 
 int RunEval(const std::string&) {
   RequireFlag("fit", FLAGS_fit);
-  RequireFlag("material", FLAGS_material);
+  CheckMaterialFlags();
   if (FLAGS_eval_samples < 1 || FLAGS_eval_samples > kMostSamples) {
     throw UsageError(
         StrCat("--eval_samples = ", FLAGS_eval_samples, "; must be 1 to ", kMostSamples));
   }
   const NeuralBrdf fit = NeuralBrdf::Read(FLAGS_fit);
-  const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
+  const std::unique_ptr<Brdf> material = OpenMaterial();
   const nlohmann::ordered_json measures = AboutMaterial([&] {
     return MeasureFit(*material, fit, fit.weights().size(), FLAGS_eval_samples, FLAGS_eval_seed);
   });
@@ -44,7 +43,7 @@ Command EvalCommand() {
   command.summary = "measures a fit against its material";
   command.usage = "  pbnbrdf eval --fit=gold.safetensors --material=gold.binary --json\n";
   command.notes = kSourceNotes;
-  command.flags = {{"", {"fit", "material", "json", "eval_samples", "eval_seed"}}};
+  command.flags = {MaterialFlagsAnd({"fit", "json", "eval_samples", "eval_seed"})};
   command.run = RunEval;
   return command;
 }

@@ -12,7 +12,6 @@
 #include "fit_flags.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/solve/fit.h"
 #include "report.h"
 #include "shared_flags.h"
@@ -51,6 +50,7 @@ NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summa
                               const nlohmann::ordered_json& measures, const std::string& flags) {
   return {{"version", PBNBRDF_VERSION},
           {"material", FLAGS_material},
+          {"scale_to_albedo", FormatNumber(FLAGS_scale_to_albedo)},
           {"terms", FLAGS_terms},
           {"problem", flags},
           {"seed", StrCat(problem.seed)},
@@ -62,6 +62,7 @@ NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summa
 nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitProblem& problem,
                                    const FitSummary& summary, const std::string& flags) {
   measures["material"] = FLAGS_material;
+  measures["scale_to_albedo"] = FLAGS_scale_to_albedo;
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
   measures["samples_used"] = summary.samples;
@@ -78,7 +79,7 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
 
 // The flags that repeat this fit, as a flagfile.
 std::string ProblemFlagfile() {
-  std::vector<std::string> names = {"material"};
+  std::vector<std::string> names = MaterialFlags();
   for (const FlagGroup& group : ProblemFlags()) {
     names.insert(names.end(), group.names.begin(), group.names.end());
   }
@@ -110,7 +111,7 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
 }
 
 int RunFit(const std::string&) {
-  RequireFlag("material", FLAGS_material);
+  CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
   FitFlags flags = ParseFitFlags();
   CheckDifferent({FLAGS_out, FLAGS_summary, FLAGS_trace});
@@ -122,7 +123,7 @@ int RunFit(const std::string&) {
     ValidateFit(flags.problem, flags.options);
   }
   std::signal(SIGINT, OnInterrupt);
-  const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
+  const std::unique_ptr<Brdf> material = OpenMaterial();
 
   const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
   std::string trace = "iteration,seconds,cost,heldout_error\n";
@@ -171,7 +172,7 @@ Command FitCommand() {
       "--out=gold.safetensors\n";
   command.notes = std::string(kSourceNotes) +
                   "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
-  command.flags = {{"", {"material", "out", "summary", "trace", "quiet", "threads"}}};
+  command.flags = {MaterialFlagsAnd({"out", "summary", "trace", "quiet", "threads"})};
   for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);
   command.run = RunFit;
   return command;

@@ -9,10 +9,6 @@
 #include <new>
 
 #include "commands.h"
-#include "shared_flags.h"
-
-DEFINE_string(material, "", "source of reflectance, see below");
-DEFINE_string(out, "", "file to write");
 
 namespace pbnbrdf::cli {
 namespace {

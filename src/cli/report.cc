@@ -11,6 +11,7 @@ namespace pbnbrdf::cli {
 nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                                   std::size_t samples, std::uint64_t seed) {
   const HeldOutErrors errors = MeasureErrors(material, fit, samples, seed);
+  const ColorErrors colors = MeasureColorErrors(material, fit, samples, seed);
   const Reciprocity reciprocity = MeasureReciprocity(fit);
   const Energy energy = MeasureEnergy(fit);
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
@@ -20,8 +21,13 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
           {"max_directional_albedo", energy.max_directional_albedo},
           {"eal", energy.eal},
           {"chromaticity_error", errors.chromaticity_error},
+          {"delta_e_mean", colors.delta_e_mean},
+          {"delta_e_p95", colors.delta_e_p95},
+          {"dark_hue_chroma_mean", colors.dark_hue_chroma_mean},
+          {"dark_hue_chroma_p95", colors.dark_hue_chroma_p95},
           {"parameters", parameters},
-          {"samples", errors.samples}};
+          {"samples", errors.samples},
+          {"dark_samples", colors.dark_samples}};
 }
 
 std::string MeasuresText(const nlohmann::ordered_json& measures) {
@@ -33,8 +39,14 @@ std::string MeasuresText(const nlohmann::ordered_json& measures) {
       {"max_directional_albedo", "over incident angles up to 89.5 degrees; at most 1 is physical"},
       {"eal", "energy amplification loss (eq. 5), sr"},
       {"chromaticity_error", "mean |log1p(|f cos|^2) - log1p(|f^ cos|^2)| (eq. 7)"},
+      {"delta_e_mean", "CIE Delta E 2000 of the lit colour, pi f cos cut to [0, 1], same samples"},
+      {"delta_e_p95", "its 95th percentile; about 1 is just visible"},
+      {"dark_hue_chroma_mean",
+       "sqrt(da^2 + db^2) in CIELAB where the lit luminance is at most 0.1"},
+      {"dark_hue_chroma_p95", "its 95th percentile"},
       {"parameters", "numbers that the fit stores"},
-      {"samples", "held-out samples"}};
+      {"samples", "held-out samples"},
+      {"dark_samples", "those of a lit luminance of at most 0.1"}};
   std::ostringstream text;
   for (const auto& [key, meaning] : kMeanings) {
     const auto& value = measures.at(key);

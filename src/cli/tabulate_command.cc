@@ -4,17 +4,16 @@
 #include "commands.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/brdf/merl.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "shared_flags.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
 int RunTabulate(const std::string&) {
-  RequireFlag("material", FLAGS_material);
+  CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
   CheckWritable(FLAGS_out);
-  MerlBrdf::Tabulate(*OpenBrdf(FLAGS_material)).Write(FLAGS_out);
+  MerlBrdf::Tabulate(*OpenMaterial()).Write(FLAGS_out);
   return 0;
 }
 
@@ -26,7 +25,7 @@ Command TabulateCommand() {
   command.summary = "turns any source of reflectance into a MERL file";
   command.usage = "  pbnbrdf tabulate --material=builtin:satin-gold --out=gold.binary\n";
   command.notes = kSourceNotes;
-  command.flags = {{"", {"material", "out"}}};
+  command.flags = {MaterialFlagsAnd({"out"})};
   command.run = RunTabulate;
   return command;
 }

@@ -8,7 +8,6 @@
 #include "commands.h"
 #include "direction_csv.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "shared_flags.h"
 
 DEFINE_string(directions, "", "CSV of direction pairs; - is standard input");
@@ -24,11 +23,11 @@ std::string ReadText(const std::string& path) {
 }
 
 int RunValues(const std::string&) {
-  RequireFlag("material", FLAGS_material);
+  CheckMaterialFlags();
   RequireFlag("directions", FLAGS_directions);
   RequireFlag("out", FLAGS_out);
   CheckWritable(FLAGS_out);
-  const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
+  const std::unique_ptr<Brdf> material = OpenMaterial();
   const DirectionCsv csv = ParseDirectionCsv(
       FLAGS_directions == "-" ? "standard input" : FLAGS_directions, ReadText(FLAGS_directions));
   std::vector<Rgb> values(csv.pairs.size());
@@ -53,7 +52,7 @@ Command ValuesCommand() {
       "0\n"
       "where a direction isn't above the horizon.\n\n" +
       std::string(kSourceNotes);
-  command.flags = {{"", {"material", "directions", "out"}}};
+  command.flags = {MaterialFlagsAnd({"directions", "out"})};
   command.run = RunValues;
   return command;
 }

@@ -9,14 +9,57 @@
 
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/metrics/color.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kDarkLuminance = 0.1;
+constexpr double kPercentile = 0.95;
+
+// Held-out samples of the reference, and what the test says there.
+struct HeldOutValues {
+  std::vector<BrdfSample> reference;
+  std::vector<Rgb> test;
+};
+
+HeldOutValues EvaluateHeldOut(const Brdf& reference, const Brdf& test, std::size_t samples,
+                              std::uint64_t seed) {
+  HeldOutValues values;
+  values.reference = DrawSamples(reference, SampleSet::kHeldOut, Sampling::kUniform, samples, seed);
+  std::vector<DirectionPair> pairs;
+  for (const BrdfSample& s : values.reference) pairs.push_back(s.pair);
+  values.test.resize(pairs.size());
+  test.Evaluate(pairs, values.test);
+  return values;
+}
 
 double SquaredNorm(const Rgb& f, double scale) {
   return (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * scale * scale;
+}
+
+// NaN stays NaN.
+Rgb LitColor(const Rgb& f, double cos_i) {
+  Rgb color;
+  for (int c = 0; c < 3; ++c) color[c] = std::clamp(kPi * f[c] * cos_i, 0.0, 1.0);
+  return color;
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+// The least of the values that so many of them don't exceed; NaN counts as the largest.
+double Percentile(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const double rank = std::ceil(kPercentile * static_cast<double>(values.size()));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+  std::nth_element(values.begin(), at, values.end(),
+                   [](double x, double y) { return std::isnan(y) ? !std::isnan(x) : x < y; });
+  return *at;
 }
 
 // Mean over channels and a midpoint grid of angles of function(f(pair) - f(swapped pair)). The
@@ -53,16 +96,11 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
 
 HeldOutErrors MeasureErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
                             std::uint64_t seed) {
-  const std::vector<BrdfSample> drawn =
-      DrawSamples(reference, SampleSet::kHeldOut, Sampling::kUniform, samples, seed);
-  std::vector<DirectionPair> pairs;
-  for (const BrdfSample& s : drawn) pairs.push_back(s.pair);
-  std::vector<Rgb> values(pairs.size());
-  test.Evaluate(pairs, values);
+  const auto [drawn, values] = EvaluateHeldOut(reference, test, samples, seed);
   HeldOutErrors errors;
   double squares = 0.0;
   for (std::size_t n = 0; n < drawn.size(); ++n) {
-    const double cos_i = CosI(pairs[n]);
+    const double cos_i = CosI(drawn[n].pair);
     const Rgb &f = drawn[n].value, &g = values[n];
     for (int c = 0; c < 3; ++c) {
       errors.mean_abs_log_error += std::abs(std::log1p(f[c] * cos_i) - std::log1p(g[c] * cos_i));
@@ -76,6 +114,27 @@ HeldOutErrors MeasureErrors(const Brdf& reference, const Brdf& test, std::size_t
   errors.chromaticity_error /= count;
   errors.rmse = std::sqrt(squares / (3.0 * count));
   errors.samples = drawn.size();
+  return errors;
+}
+
+ColorErrors MeasureColorErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
+                               std::uint64_t seed) {
+  const auto [drawn, values] = EvaluateHeldOut(reference, test, samples, seed);
+  std::vector<double> delta_e(drawn.size()), dark;
+  for (std::size_t n = 0; n < drawn.size(); ++n) {
+    const double cos_i = CosI(drawn[n].pair);
+    const Rgb wanted = LitColor(drawn[n].value, cos_i);
+    const Lab x = ToLab(wanted), y = ToLab(LitColor(values[n], cos_i));
+    delta_e[n] = DeltaE2000(x, y);
+    if (Luminance(wanted) <= kDarkLuminance) dark.push_back(HueChromaDifference(x, y));
+  }
+  ColorErrors errors;
+  errors.samples = delta_e.size();
+  errors.dark_samples = dark.size();
+  errors.delta_e_mean = Mean(delta_e);
+  errors.delta_e_p95 = Percentile(std::move(delta_e));
+  errors.dark_hue_chroma_mean = Mean(dark);
+  errors.dark_hue_chroma_p95 = Percentile(std::move(dark));
   return errors;
 }
 

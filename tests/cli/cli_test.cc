@@ -107,6 +107,9 @@ TEST_F(Cli, WrongUsageExitsWith2) {
               "--energy_angles = 0; must be 1 to 1024");
   ExpectError(fit + " --starts=0", 2, "--starts = 0; must be >= 1");
   ExpectError(fit + " --threads=-1", 2, "--threads = -1; must be >= 0");
+  for (const char* scale : {"-0.5", "nan", "inf"}) {
+    ExpectError(fit + " --scale_to_albedo=" + scale, 2, "--scale_to_albedo = ");
+  }
   ExpectError(fit + " gold.binary", 2, "'gold.binary' is not a flag");
   ExpectError("info", 2, "a file or another source is missing");
 }
@@ -201,13 +204,15 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
     keys.push_back(key);
     EXPECT_TRUE(value.is_number()) << key;
   }
-  EXPECT_THAT(keys, testing::UnorderedElementsAre("mean_abs_log_error", "rmse", "hrl", "hcl",
-                                                  "max_directional_albedo", "eal",
-                                                  "chromaticity_error", "parameters", "samples"));
+  EXPECT_THAT(keys, testing::UnorderedElementsAre(
+                        "mean_abs_log_error", "rmse", "hrl", "hcl", "max_directional_albedo", "eal",
+                        "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
+                        "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
   const Result text = Run("eval --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
   EXPECT_THAT(text.out, HasSubstr("Helmholtz reciprocity loss (eq. 8)"));
+  for (const std::string& key : keys) EXPECT_THAT(text.out, HasSubstr(key + " "));
 }
 
 TEST_F(Cli, ANetworkIsAMaterialToo) {
@@ -241,6 +246,55 @@ TEST_F(Cli, APublishedNetworkIsAMaterialAndAFit) {
   EXPECT_EQ(Run("fit --material=" + network + kQuick + "--out=" + Path("b.safetensors")).status, 0);
   WriteBytes(Path("bad.h5"), "x");
   ExpectError("info " + Path("bad.h5"), 1, "bad.h5: not an HDF5 file");
+}
+
+// An albedo of 0.99 is asked to be 0.495: half of everything.
+TEST_F(Cli, EveryCommandScalesTheMaterial) {
+  const std::string half = " --material=builtin:spectralon --scale_to_albedo=0.495 ";
+  WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.3,0,0.5,1\n");
+  const auto value = [&](const std::string& material) {
+    const Result result = Run("values" + material + " --out=- --directions=" + Path("pairs.csv"));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return ParseNumber("b", Split(Split(result.out, '\n')[1], ',').back());
+  };
+  EXPECT_NEAR(value(half), 0.495 / kPi, 1e-4);
+
+  ASSERT_EQ(Run("tabulate" + half + "--out=" + Path("half.binary")).status, 0);
+  EXPECT_NEAR(value(" --material=" + Path("half.binary")), 0.495 / kPi, 1e-4);
+
+  ASSERT_EQ(Run("fit" + half + kQuick + "--max_iterations=30 --out=" + Path("a.safetensors") +
+                " --summary=" + Path("a.json"))
+                .status,
+            0);
+  const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  EXPECT_EQ(summary["scale_to_albedo"], 0.495);
+  EXPECT_THAT(summary["problem"], HasSubstr("--scale_to_albedo=0.495\n"));
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).metadata().at("scale_to_albedo"), "0.495");
+  EXPECT_NEAR(value(" --material=" + Path("a.safetensors")), 0.495 / kPi, 2e-3);
+
+  const auto error = [&](const std::string& material) {
+    const Result eval =
+        Run("eval --json --eval_samples=500 --fit=" + Path("a.safetensors") + material);
+    return json::parse(eval.out)["mean_abs_log_error"].get<double>();
+  };
+  EXPECT_LT(error(half), 0.003);
+  EXPECT_GT(error(" --material=builtin:spectralon"), 0.02);
+}
+
+TEST_F(Cli, MaterialsThatCannotBeScaledAreNamed) {
+  const std::string scale = " --scale_to_albedo=0.99 --out=" + Path("out");
+  WriteBytes(Path("black.csv"),
+             "name,other_name,channel,rhoD,rhoS,alpha,p,f0,f1,kap,lambda,c,k,theta0,error\n"
+             "black,,r,0,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n"
+             "black,,g,0,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n"
+             "black,,b,0,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n");
+  ExpectError("tabulate --material=sgd:" + Path("black.csv") + "#black" + scale, 1,
+              "black.csv#black: can't be scaled to an albedo of 0.99");
+  for (const char* command : {"tabulate", "values --directions=-", "eval --fit=x"}) {
+    ExpectError(StrCat(command, " --material=builtin:satin-gold --scale_to_albedo=-1") +
+                    (command[0] == 'e' ? "" : " --out=" + Path("out")),
+                2, "--scale_to_albedo = -1; must be finite and >= 0");
+  }
 }
 
 TEST_F(Cli, ValuesAppendsToWhatItReads) {

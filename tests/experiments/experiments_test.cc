@@ -139,6 +139,82 @@ TEST(SolverComparison, RejectsWhatItCantDo) {
   EXPECT_EQ(RunIn(folder, "solver_comparison", {"absent.binary"}).status, 1);
 }
 
+const std::vector<std::string> kTinyAblation = {"--max_iterations=3", "--samples=300",
+                                                "--heldout_samples=500", "--threads=1"};
+
+ProgramResult RunAblation(const TemporaryFolder& folder, std::vector<std::string> flags) {
+  flags.insert(flags.begin(), kTinyAblation.begin(), kTinyAblation.end());
+  return RunIn(folder, "ablation", flags);
+}
+
+constexpr char kAblationHeader[] =
+    "table,set_up,material,material_class,seed,iterations,seconds,mean_abs_log_error,"
+    "chromaticity_error,hrl,hcl,max_directional_albedo,eal,delta_e_mean,delta_e_p95,"
+    "dark_hue_chroma_mean,dark_hue_chroma_p95,dark_samples";
+
+TEST(Ablation, WritesEveryFitAndTheTables) {
+  const TemporaryFolder folder;
+  const ProgramResult run = RunAblation(
+      folder,
+      {"--seeds=2", "--materials=metal=builtin:satin-gold", "diffuse=builtin:wall-plaster"});
+  ASSERT_EQ(run.status, 0);
+  const std::string csv = Read(folder / "results/ablation.csv");
+  EXPECT_THAT(csv, testing::StartsWith(std::string(kAblationHeader) + "\n"));
+  const auto count = [&](const std::string& text) {
+    std::size_t found = 0;
+    for (std::size_t at = csv.find(text); at != std::string::npos; at = csv.find(text, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("\n1,"), 6u);  // three encodings, two materials
+  EXPECT_EQ(count("\n2,"), 3u);  // gold itself and two set-ups; plaster dissipates
+  EXPECT_EQ(count("\n3,"), 6u);  // three weights
+  EXPECT_EQ(count("\n1,reciprocal encoding,satin-gold,metal,2,"), 1u);
+  for (const char* text :
+       {"Failed fits: 0.", "## Reciprocity", "HRL x 10^3, median", "| nbrdf ", "14729", "## Energy",
+        "| the material itself", "| log + energy", " of 1 ", "## Chromaticity",
+        "| log + 0.1 chromaticity", "log + 1 chromaticity against log: dark hue/chroma p95 falls",
+        "| metal ", "LPIPS"}) {
+    EXPECT_THAT(run.output, HasSubstr(text));
+  }
+  EXPECT_EQ(Read(folder / "results/ablation.md"), run.output);
+}
+
+TEST(Ablation, OtherSourcesAreScaledForTheEnergyTable) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "sgd.csv",
+             "name,other_name,channel,rhoD,rhoS,alpha,p,f0,f1,kap,lambda,c,k,theta0,error\n"
+             "grey,,r,0.1,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n"
+             "grey,,g,0.2,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n"
+             "grey,,b,0.2,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n");
+  const ProgramResult run = RunAblation(
+      folder, {"--tables=2", "--sgd=" + (folder / "sgd.csv"), "--materials=other=sgd:grey"});
+  ASSERT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, testing::ContainsRegex("the material itself +\\| +0.9[89][0-9]* "));
+  EXPECT_THAT(run.output, Not(HasSubstr("## Reciprocity")));
+}
+
+TEST(Ablation, CountsFitsThatFail) {
+  const TemporaryFolder folder;
+  WriteEmptyTable(folder / "empty.binary");
+  const ProgramResult run = RunAblation(
+      folder, {"--tables=1", "--seeds=1,2", "--materials=" + (folder / "empty.binary")});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 6.\n\n- table 1, empty, nbrdf, seed 1: "));
+  EXPECT_THAT(run.output, HasSubstr("\n- table 1, empty, nbrdf, seed 2: "));
+}
+
+TEST(Ablation, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--tables=4", "--seeds=0", "--base=other", "--chromaticity_weights=-1",
+                           "--chromaticity_weights=x", "--heldout_samples=0", "--scale_to_albedo=0",
+                           "--samples=0", "--materials=sgd:brass", "--materials=absent.binary",
+                           "--materials=builtin:satin-gold,builtin:satin-gold"}) {
+    EXPECT_EQ(RunAblation(folder, {flag}).status, 1) << flag;
+  }
+}
+
 TEST(JacobianCost, WritesTableAndFigure) {
   const TemporaryFolder folder;
   const ProgramResult run =
@@ -172,11 +248,15 @@ TEST(Scaling, WritesTablesAndFigure) {
 
 TEST(Experiments, HelpNamesTheFlags) {
   const TemporaryFolder folder;
-  for (const char* program : {"solver_comparison", "jacobian_cost", "scaling"}) {
+  const std::pair<const char*, const char*> kOwnFlags[] = {{"ablation", "--chromaticity_weights"},
+                                                           {"solver_comparison", "--hidden"},
+                                                           {"jacobian_cost", "--hidden"},
+                                                           {"scaling", "--hidden"}};
+  for (const auto& [program, own_flag] : kOwnFlags) {
     const ProgramResult run = RunIn(folder, program, {"--help"});
     EXPECT_EQ(run.status, 0);
     EXPECT_THAT(run.output, HasSubstr("--out_dir"));
-    EXPECT_THAT(run.output, HasSubstr("--hidden"));
+    EXPECT_THAT(run.output, HasSubstr(own_flag));
     EXPECT_THAT(run.output, Not(HasSubstr("--minloglevel")));
   }
 }

@@ -3,6 +3,8 @@
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/analytic.h"
 #include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/brdf/half_diff.h"
+#include "pbnbrdf/metrics/color.h"
 
 namespace pbnbrdf {
 namespace {
@@ -61,6 +63,95 @@ TEST(HeldOutErrors, OfTwoLambertiansAreBounded) {
   EXPECT_LT(errors.rmse, b - a);
   EXPECT_GT(errors.rmse, 0.3 * (b - a));
   EXPECT_LT(errors.chromaticity_error, std::log1p(3 * b * b) - std::log1p(3 * a * a));
+}
+
+TEST(ColorErrors, OfAMaterialAgainstItselfAreZero) {
+  const auto gold = MakeBuiltin("satin-gold");
+  const ColorErrors errors = MeasureColorErrors(*gold, *gold, 1000, /*seed=*/1);
+  EXPECT_EQ(errors.delta_e_mean, 0.0);
+  EXPECT_EQ(errors.delta_e_p95, 0.0);
+  EXPECT_EQ(errors.dark_hue_chroma_mean, 0.0);
+  EXPECT_EQ(errors.dark_hue_chroma_p95, 0.0);
+  EXPECT_EQ(errors.samples, 1000u);
+  EXPECT_GT(errors.dark_samples, 0u);
+  EXPECT_LT(errors.dark_samples, 1000u);
+}
+
+// Its lit colour is the same for all directions.
+class EvenlyLitBrdf final : public Brdf {
+ public:
+  explicit EvenlyLitBrdf(const Rgb& color) : color_(color) {}
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override {
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      const double scale = 1.0 / (kPi * pairs[n].wi.z);
+      for (int c = 0; c < 3; ++c) values[n][c] = scale * color_[c];
+    }
+  }
+  std::string Description() const override { return "evenly lit"; }
+
+ private:
+  Rgb color_;
+};
+
+TEST(ColorErrors, OfConstantColoursAreTheirDifference) {
+  const Rgb x = {0.05, 0.02, 0.01}, y = {0.06, 0.02, 0.02};
+  const ColorErrors errors =
+      MeasureColorErrors(EvenlyLitBrdf(x), EvenlyLitBrdf(y), 500, /*seed=*/1);
+  const double delta_e = DeltaE2000(ToLab(x), ToLab(y));
+  const double hue_chroma = HueChromaDifference(ToLab(x), ToLab(y));
+  EXPECT_NEAR(errors.delta_e_mean, delta_e, 1e-9);
+  EXPECT_NEAR(errors.delta_e_p95, delta_e, 1e-9);
+  EXPECT_NEAR(errors.dark_hue_chroma_mean, hue_chroma, 1e-9);
+  EXPECT_NEAR(errors.dark_hue_chroma_p95, hue_chroma, 1e-9);
+  EXPECT_EQ(errors.dark_samples, 500u);
+}
+
+TEST(ColorErrors, WithoutDarkSamplesTheirsAreZero) {
+  const ColorErrors errors = MeasureColorErrors(EvenlyLitBrdf({0.2, 0.2, 0.2}),
+                                                EvenlyLitBrdf({0.3, 0.2, 0.2}), 100, /*seed=*/1);
+  EXPECT_GT(errors.delta_e_mean, 1.0);
+  EXPECT_EQ(errors.dark_samples, 0u);
+  EXPECT_EQ(errors.dark_hue_chroma_mean, 0.0);
+  EXPECT_EQ(errors.dark_hue_chroma_p95, 0.0);
+}
+
+TEST(ColorErrors, BeyondWhiteADisplayShowsNoDifference) {
+  const ColorErrors errors = MeasureColorErrors(EvenlyLitBrdf({1.1, 1.5, 1e9}),
+                                                EvenlyLitBrdf({2.0, 1.1, 3.0}), 100, /*seed=*/1);
+  EXPECT_EQ(errors.delta_e_p95, 0.0);
+}
+
+// Differs from black in about a tenth of the samples.
+class SpottedBrdf final : public Brdf {
+ public:
+  explicit SpottedBrdf(double value) : value_(value) {}
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override {
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      const double f = ToAngles(pairs[n]).phi_d < 0.2 * kPi ? value_ : 0.0;
+      values[n] = {f, f, f};
+    }
+  }
+  std::string Description() const override { return "spotted"; }
+
+ private:
+  double value_;
+};
+
+TEST(ColorErrors, ThePercentileIsNotTheMean) {
+  const LambertBrdf black({0, 0, 0});
+  const ColorErrors errors = MeasureColorErrors(black, SpottedBrdf(1e9), 20000, /*seed=*/1);
+  EXPECT_NEAR(errors.delta_e_mean, 10.0, 2.0);  // black to white is 100
+  EXPECT_NEAR(errors.delta_e_p95, 100.0, 1e-9);
+  EXPECT_EQ(errors.dark_samples, 20000u);
+}
+
+TEST(ColorErrors, NotANumberIsNotHidden) {
+  const ColorErrors errors =
+      MeasureColorErrors(LambertBrdf({0, 0, 0}), SpottedBrdf(NAN), 2000, /*seed=*/1);
+  EXPECT_TRUE(std::isnan(errors.delta_e_mean));
+  EXPECT_TRUE(std::isnan(errors.delta_e_p95));
 }
 
 }  // namespace

@@ -20,6 +20,21 @@ struct HeldOutErrors {
 HeldOutErrors MeasureErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
                             std::uint64_t seed);
 
+// On the same samples the lit colour: what a display shows of the surface under one directional D65
+// light in which a white diffuse surface that faces it is white, pi f cos_i as linear RGB, cut to
+// [0, 1]. 95th percentile: the least value that 95 % of the samples don't exceed.
+struct ColorErrors {
+  double delta_e_mean = 0.0, delta_e_p95 = 0.0;  // CIE Delta E 2000 (color.h)
+  // sqrt(da^2 + db^2) of CIELAB, where the reference's lit luminance is at most 0.1 of white's: the
+  // dark colours whose tint small errors change. 0 where there is no such sample.
+  double dark_hue_chroma_mean = 0.0, dark_hue_chroma_p95 = 0.0;
+  std::size_t samples = 0, dark_samples = 0;
+};
+
+// As MeasureErrors. A value that isn't finite makes the mean NaN.
+ColorErrors MeasureColorErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
+                               std::uint64_t seed);
+
 // Mean over the whole domain of angles, below the horizon too, and channels, by the midpoint rule
 // with theta_h = (pi/2) t^2. phi_d + pi is the exchange of wi and wo.
 struct Reciprocity {

@@ -1,0 +1,323 @@
+// ablation.cc: what each of the paper's terms does, on many materials.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "ablation_tables.h"
+#include "comparison.h"
+#include "experiment.h"
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/text.h"
+#include "pbnbrdf/brdf/scaled.h"
+#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/solve/fit.h"
+
+DEFINE_string(materials, "",
+              "in place of the default ones, separated by commas: sources, CLASS= in front of them "
+              "if wanted; sgd:NAME is a material of --sgd");
+DEFINE_string(sgd, "", "CSV of SGD parameters; '': the default materials are the built-in ones");
+DEFINE_string(tables, "1,2,3", "those of the paper's to make");
+DEFINE_string(base, "default",
+              "what tables 2 and 3 add their terms to: default: the fit's default set-up, merl "
+              "encoding and tanh units | reciprocal: problems/reciprocal.flags");
+DEFINE_string(chromaticity_weights, "0.1,1", "of table 3, beside none");
+DEFINE_double(
+    scale_to_albedo, 0.99,
+    "of table 2: the largest directional albedo that materials are scaled to, but for the "
+    "built-in ones");
+DEFINE_string(seeds, "1", "seeds of the fits");
+DEFINE_int32(max_iterations, pbnbrdf::FitOptions{}.max_iterations, "of each fit");
+DEFINE_uint64(samples, pbnbrdf::FitProblem{}.samples, "most training samples");
+DEFINE_double(max_seconds, 60.0, "of each fit");
+DEFINE_int32(threads, 0, "of each fit; 0: one for each core");
+DEFINE_uint64(heldout_samples, 200000, "held-out samples of a fit's errors");
+
+namespace pbnbrdf {
+namespace {
+
+constexpr char kUsage[] =
+    R"(ablation: the paper's tables, with and without each of its terms, on our materials.
+
+  ablation --out_dir=results --sgd=parameters.csv
+  ablation --out_dir=results --materials=builtin:satin-gold,metal=gold.binary --tables=1,3
+  ablation --out_dir=results --sgd=parameters.csv merl/*.binary
+
+The arguments are further materials. Table 1 compares encodings, table 2 fits of materials that
+reflect next to all light with and without the energy term, table 3 weights of the chromaticity
+term. Each fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
+)";
+
+constexpr const char* kBuiltins[] = {
+    "diffuse=builtin:spectralon",       "diffuse=builtin:wall-plaster",
+    "diffuse=builtin:white-sand",       "glossy=builtin:white-ceramic-tile",
+    "glossy=builtin:glossy-grey-paper", "glossy=builtin:ivory-computer-plastic",
+    "glossy=builtin:plastic-laminate",  "glossy=builtin:blue-plastic",
+    "glossy=builtin:red-satin-plastic", "metal=builtin:rough-iron",
+    "metal=builtin:satin-gold",         "metal=builtin:brushed-copper",
+    "metal=builtin:polished-chromium",  "metal=builtin:silver-mirror"};
+
+// Of each class some dark, light and coloured ones.
+constexpr const char* kSgdMaterials[] = {"diffuse=sgd:white-diffuse-bball",
+                                         "diffuse=sgd:polyurethane-foam",
+                                         "diffuse=sgd:neoprene-rubber",
+                                         "fabric=sgd:pink-felt",
+                                         "fabric=sgd:beige-fabric",
+                                         "fabric=sgd:red-fabric2",
+                                         "fabric=sgd:dark-specular-fabric",
+                                         "glossy=sgd:teflon",
+                                         "glossy=sgd:nylon",
+                                         "glossy=sgd:red-plastic",
+                                         "glossy=sgd:yellow-matte-plastic",
+                                         "glossy=sgd:specular-black-phenolic",
+                                         "glossy=sgd:specular-violet-phenolic",
+                                         "glossy=sgd:black-obsidian",
+                                         "glossy=sgd:white-marble",
+                                         "glossy=sgd:cherry-235",
+                                         "paint=sgd:blue-metallic-paint",
+                                         "paint=sgd:gold-metallic-paint",
+                                         "paint=sgd:color-changing-paint2",
+                                         "paint=sgd:dark-red-paint",
+                                         "paint=sgd:light-red-paint",
+                                         "metal=sgd:alum-bronze",
+                                         "metal=sgd:brass",
+                                         "metal=sgd:chrome-steel",
+                                         "metal=sgd:tungsten-carbide"};
+
+// A built-in material below this isn't one of low dissipation; others are scaled.
+constexpr double kLowDissipation = 0.9;
+
+enum class Base { kDefault, kReciprocal };
+
+constexpr NameTable<Base, 2> kBases = {
+    {{"default", Base::kDefault}, {"reciprocal", Base::kReciprocal}}};
+
+// A row of a table.
+struct SetUp {
+  std::string name;
+  FitProblem problem;
+};
+
+// problems/nbrdf.flags, on another encoding.
+FitProblem NbrdfProblem(Encoding encoding) {
+  FitProblem problem;
+  problem.encoding = encoding;
+  problem.activation = Activation::kRelu;
+  problem.sampling = Sampling::kUniform;
+  problem.energy_weight = 0.0;
+  return problem;
+}
+
+// With the log term alone.
+FitProblem BaseProblem(Base base) {
+  if (base == Base::kReciprocal) return NbrdfProblem(Encoding::kReciprocal);
+  FitProblem problem;
+  problem.energy_weight = 0.0;
+  return problem;
+}
+
+std::vector<SetUp> SetUps(std::size_t table, Base base) {
+  if (table == 1) {
+    return {{"nbrdf", NbrdfProblem(Encoding::kCartesian)},
+            {"reciprocal encoding", NbrdfProblem(Encoding::kReciprocal)},
+            {"merl encoding", NbrdfProblem(Encoding::kMerl)}};
+  }
+  std::vector<SetUp> set_ups = {{"log", BaseProblem(base)}};
+  if (table == 2) {
+    set_ups.push_back({"log + energy", BaseProblem(base)});
+    set_ups.back().problem.energy_weight = FitProblem{}.energy_weight;
+    return set_ups;
+  }
+  for (const std::string& text : Split(FLAGS_chromaticity_weights, ',')) {
+    set_ups.push_back({StrCat("log + ", text, " chromaticity"), BaseProblem(base)});
+    set_ups.back().problem.chromaticity_weight = ParseNumber("chromaticity_weights", text);
+  }
+  return set_ups;
+}
+
+// "CLASS=sgd:NAME" with the path of --sgd.
+std::string WithSgdPath(const std::string& text) {
+  const std::size_t at = text.find("sgd:");
+  const bool is_short = (at == 0 || (at != std::string::npos && text[at - 1] == '=')) &&
+                        text.find('#') == std::string::npos;
+  if (!is_short) return text;
+  if (FLAGS_sgd.empty()) Fail("material '", text, "': --sgd must say where its parameters are");
+  return StrCat(text.substr(0, at + 4), FLAGS_sgd, "#", text.substr(at + 4));
+}
+
+std::vector<std::string> MaterialTexts(const std::vector<std::string>& arguments) {
+  std::vector<std::string> texts;
+  if (!FLAGS_materials.empty()) {
+    texts = Split(FLAGS_materials, ',');
+  } else {
+    texts.assign(std::begin(kBuiltins), std::end(kBuiltins));
+    if (!FLAGS_sgd.empty()) {
+      texts.insert(texts.end(), std::begin(kSgdMaterials), std::end(kSgdMaterials));
+    }
+  }
+  texts.insert(texts.end(), arguments.begin(), arguments.end());
+  std::transform(texts.begin(), texts.end(), texts.begin(), WithSgdPath);
+  return texts;
+}
+
+// What is asked for, all of it checked before the first fit.
+struct Plan {
+  std::vector<std::size_t> tables;
+  std::vector<MaterialSource> materials;
+  std::vector<std::size_t> seeds;
+  Base base;
+  FitOptions options;
+};
+
+Plan MakePlan(const std::vector<std::string>& arguments) {
+  Plan plan;
+  plan.tables = ParseCounts("tables", FLAGS_tables);
+  plan.seeds = ParseCounts("seeds", FLAGS_seeds);
+  plan.base = ParseName(kBases, "base", FLAGS_base);
+  plan.options.max_iterations = FLAGS_max_iterations;
+  plan.options.max_seconds = FLAGS_max_seconds;
+  plan.options.threads = FLAGS_threads;
+  for (std::size_t table : plan.tables) {
+    if (table > 3) Fail("tables: ", table, "; must be 1 to 3");
+    for (SetUp& set_up : SetUps(table, plan.base)) {
+      set_up.problem.samples = FLAGS_samples;
+      ValidateFit(set_up.problem, plan.options);
+    }
+  }
+  if (FLAGS_heldout_samples < 1) Fail("heldout_samples = 0; must be >= 1");
+  if (!(FLAGS_scale_to_albedo > 0.0)) {
+    Fail("scale_to_albedo = ", FLAGS_scale_to_albedo, "; must be > 0");
+  }
+  plan.materials = ParseMaterials(MaterialTexts(arguments));
+  return plan;
+}
+
+// What table 2 fits: null if the material isn't one of low dissipation.
+std::unique_ptr<Brdf> OfLowDissipation(const MaterialSource& material) {
+  std::unique_ptr<Brdf> brdf = OpenBrdf(material.source);
+  if (!material.source.starts_with("builtin:")) {
+    return ScaleToAlbedo(std::move(brdf), FLAGS_scale_to_albedo);
+  }
+  return LargestAlbedo(*brdf) >= kLowDissipation ? std::move(brdf) : nullptr;
+}
+
+class Ablation {
+ public:
+  explicit Ablation(const Plan& plan)
+      : plan_(plan), csv_path_(OutputPath("ablation.csv")), csv_(csv_path_) {
+    csv_ << CsvLine(AblationCsvHeader()) << std::flush;
+  }
+
+  void RunMaterial(const MaterialSource& material) {
+    for (std::size_t table : plan_.tables) {
+      if (const std::unique_ptr<Brdf> brdf = Open(table, material)) {
+        RunTable(table, material, *brdf);
+      }
+    }
+  }
+
+  void Report() const { WriteReport("ablation", Preface() + AblationMarkdown(records_)); }
+
+ private:
+  // Null if the table does without the material.
+  std::unique_ptr<Brdf> Open(std::size_t table, const MaterialSource& material) {
+    try {
+      return table == 2 ? OfLowDissipation(material) : OpenBrdf(material.source);
+    } catch (const Error& error) {
+      NoteFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
+      return nullptr;
+    }
+  }
+
+  void RunTable(std::size_t table, const MaterialSource& material, const Brdf& brdf) {
+    AblationRecord record;
+    record.table = static_cast<int>(table);
+    record.material = material.name;
+    record.material_class = material.material_class;
+    if (table == 2) {
+      record.set_up = kMaterialItself;
+      record.energy = MeasureEnergy(brdf);
+      Keep(record);
+    }
+    for (const SetUp& set_up : SetUps(table, plan_.base)) {
+      for (std::size_t seed : plan_.seeds) {
+        record.set_up = set_up.name;
+        record.seed = seed;
+        RunFit(brdf, set_up.problem, record);
+      }
+    }
+  }
+
+  // record: names the fit.
+  void RunFit(const Brdf& material, FitProblem problem, AblationRecord record) {
+    const std::string what = StrCat("table ", record.table, ", ", record.material, ", ",
+                                    record.set_up, ", seed ", record.seed, ": ");
+    problem.samples = FLAGS_samples;
+    problem.seed = record.seed;
+    try {
+      const Fit fit = FitBrdf(material, problem, plan_.options);
+      record.iterations = fit.summary.iterations;
+      record.seconds = fit.summary.seconds;
+      record.errors = MeasureErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
+      record.colors = MeasureColorErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
+      record.reciprocity = MeasureReciprocity(fit.network);
+      record.energy = MeasureEnergy(fit.network);
+    } catch (const Error& error) {
+      NoteFailure(what + error.what());
+      return;
+    }
+    if (!IsFinite(record)) {
+      NoteFailure(what + "a measure isn't finite");
+      return;
+    }
+    std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record.errors.mean_abs_log_error,
+                 record.seconds);
+    Keep(record);
+  }
+
+  // At once, so that a long run that is stopped has left its rows.
+  void Keep(const AblationRecord& record) {
+    csv_ << CsvLine(AblationCsvRow(record));
+    if (!csv_.flush()) Fail(csv_path_, ": can't be written");
+    records_.push_back(record);
+  }
+
+  void NoteFailure(const std::string& failure) {
+    failures_.push_back(failure);
+    std::fprintf(stderr, "%s\n", failure.c_str());
+  }
+
+  // How the numbers came about, and what failed.
+  std::string Preface() const {
+    std::string text = StrCat(
+        plan_.materials.size(), " materials, seeds ", FLAGS_seeds, ", at most ",
+        FLAGS_max_iterations, " iterations and ", FLAGS_max_seconds,
+        " s a fit; base of the energy and chromaticity tables: ", FLAGS_base,
+        ". Medians are over materials, of each the median of its seeds; worst: of all fits. For "
+        "energy, materials that aren't built in are scaled to a largest directional albedo of ",
+        FLAGS_scale_to_albedo, ", and built-in ones as they are if theirs is at least ",
+        kLowDissipation, ". Failed fits: ", failures_.size(), ".\n\n");
+    for (const std::string& failure : failures_) text += "- " + failure + "\n";
+    return text + (failures_.empty() ? "" : "\n");
+  }
+
+  const Plan& plan_;
+  std::string csv_path_;
+  std::ofstream csv_;
+  std::vector<AblationRecord> records_;
+  std::vector<std::string> failures_;
+};
+
+void Run(const std::vector<std::string>& arguments) {
+  const Plan plan = MakePlan(arguments);
+  Ablation ablation(plan);
+  for (const MaterialSource& material : plan.materials) ablation.RunMaterial(material);
+  ablation.Report();
+}
+
+}  // namespace
+}  // namespace pbnbrdf
+
+int main(int argc, char** argv) {
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+}

@@ -1,0 +1,56 @@
+// ablation_tables.h: fits with and without each of the paper's terms, as tables in the order of its
+// own: 1 reciprocity, 2 energy, 3 chromaticity.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pbnbrdf/metrics/brdf_metrics.h"
+
+namespace pbnbrdf {
+
+// One fit; or, in table 2, what the fits are to reproduce, if set_up is kMaterialItself.
+struct AblationRecord {
+  int table = 1;       // 1, 2, 3
+  std::string set_up;  // a row of the table
+  std::string material, material_class;
+  std::size_t seed = 0;
+  int iterations = 0;
+  double seconds = 0.0;
+  HeldOutErrors errors;
+  ColorErrors colors;
+  Reciprocity reciprocity;
+  Energy energy;
+};
+
+inline constexpr char kMaterialItself[] = "the material itself";
+
+// A fit whose largest directional albedo exceeds this makes energy; up to it, it may be rounding.
+inline constexpr double kMostAlbedo = 1.0 + 1e-6;
+
+// The columns of a CSV and a record's row, every measure in full.
+std::vector<std::string> AblationCsvHeader();
+std::vector<std::string> AblationCsvRow(const AblationRecord& record);
+
+// Whether each measure is a number; the tables are of such records.
+bool IsFinite(const AblationRecord& record);
+
+// A section for each table that has records: a row for each set-up with, for each measure, the
+// median over materials (of each the median of its seeds) and the worst of all fits, and the
+// paper's figures below. Of table 3 also, against its first set-up, on which kinds of material the
+// 95th percentile of the dark colours' hue and chroma error falls or rises by more than 10 %.
+std::string AblationMarkdown(const std::vector<AblationRecord>& records);
+
+// How many materials a measure falls or rises on by more than 10 % from one set-up to another.
+struct Change {
+  std::string material_class;
+  std::vector<std::string> falls, rises;  // the materials' names
+  int materials = 0;                      // that both set-ups have fitted
+};
+
+// Of dark_hue_chroma_p95, class by class; materials without dark colours are left out. records: of
+// one table.
+std::vector<Change> DarkColorChanges(const std::vector<AblationRecord>& records,
+                                     const std::string& from, const std::string& to);
+
+}  // namespace pbnbrdf
