@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/albedo.h"
@@ -11,41 +10,9 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr int kLastDegree = 85;      // of theta_i, every degree
-constexpr int kAzimuthDegrees = 15;  // from one phi_i to the next
-
-Vec3 Turned(const Vec3& v, double cosine, double sine) {
-  return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z};
-}
-
-// A source as it looks where the light comes from the azimuth phi in place of 0.
-class TurnedBrdf final : public Brdf {
- public:
-  TurnedBrdf(const Brdf& source, double phi)
-      : source_(source), cosine_(std::cos(phi)), sine_(std::sin(phi)) {}
-
-  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
-                         std::span<Rgb> values) const override {
-    std::vector<DirectionPair> turned;
-    turned.reserve(pairs.size());
-    for (const auto& [wi, wo] : pairs) {
-      turned.push_back({Turned(wi, cosine_, sine_), Turned(wo, cosine_, sine_)});
-    }
-    source_.EvaluateUnclipped(turned, values);
-  }
-  std::string Description() const override { return source_.Description() + ", turned"; }
-
- private:
-  const Brdf& source_;
-  double cosine_, sine_;
-};
-
-// The one place that integrates.
-Rgb AlbedoAt(const Brdf& brdf, double theta_i, double phi_i) {
-  if (phi_i == 0.0) return DirectionalAlbedo(brdf, theta_i);
-  return DirectionalAlbedo(TurnedBrdf(brdf, phi_i), theta_i);
-}
+constexpr double kLastAngle = 85.0 * std::numbers::pi / 180.0;
+constexpr AlbedoGrid kGrid = {
+    .angles = 64, .azimuths = 8, .n_theta = 2, .n_phi = 64, .refine_above = 0.0};
 
 }  // namespace
 
@@ -69,15 +36,21 @@ std::string ScaledBrdf::Description() const {
 }
 
 double LargestAlbedo(const Brdf& brdf) {
-  const int azimuths = brdf.IsIsotropic() ? 1 : 360 / kAzimuthDegrees;
   double largest = 0.0;
-  for (int azimuth = 0; azimuth < azimuths; ++azimuth) {
-    for (int degree = 0; degree <= kLastDegree; ++degree) {
-      for (double a : AlbedoAt(brdf, degree * kDegree, azimuth * kAzimuthDegrees * kDegree)) {
-        if (!std::isfinite(a)) Fail("the directional albedo at ", degree, " degrees is ", a);
-        largest = std::max(largest, a);
-      }
+  const auto take = [&](double theta_i, const Rgb& albedo) {
+    for (double a : albedo) {
+      if (!std::isfinite(a)) Fail("the directional albedo at theta_i = ", theta_i, " is ", a);
+      largest = std::max(largest, a);
     }
+  };
+  for (const IncidentAlbedo& at : AlbedoProfile(brdf, kGrid)) {
+    if (at.theta_i < kLastAngle) take(at.theta_i, at.albedo);
+  }
+  const auto quadrature = AlbedoQuadrature::OnMerlRows(kGrid.n_theta, kGrid.n_phi);
+  const int azimuths = brdf.IsIsotropic() ? 1 : kGrid.azimuths;
+  for (int p = 0; p < azimuths; ++p) {
+    const Vec3 wi = FromSpherical(kLastAngle, 2.0 * std::numbers::pi * p / azimuths);
+    take(kLastAngle, DirectionalAlbedo(brdf, wi, quadrature));
   }
   return largest;
 }

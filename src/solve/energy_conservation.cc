@@ -53,11 +53,6 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     for (int c = 0; c < 3; ++c) stratum.limit[c] = kMostAlbedo - (exact[c] - own[c]);
   });
   const Rgb largest = LargestByChannel(profile_);
-  for (auto& at: profile_) if (std::max({at.albedo[0],at.albedo[1],at.albedo[2]})==std::max({largest[0], largest[1], largest[2]})) {
-    const Rgb own = DirectionalAlbedo(network, FromSpherical(at.theta_i,0), QuadratureOfStratum(problem_, 0));
-    fprintf(stderr," largest at %.4f own %.6f vs %.6f\n", at.theta_i*180/kPi, std::max({own[0],own[1],own[2]}), std::max({largest[0], largest[1], largest[2]}));
-  }
-  double wm=0; for (auto&s:strata_) for(int c=0;c<3;c++) wm=std::max(wm, std::abs(s.limit[c]-1)); fprintf(stderr,"worst mismatch %g\n", wm);
   return std::max({largest[0], largest[1], largest[2]});
 }
 

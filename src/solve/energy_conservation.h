@@ -1,9 +1,9 @@
 // energy_conservation.h: how a fit ends with no directional albedo above 1, at any incident
 // direction: infinitely many constraints, of which only those that matter are kept [1].
 //
-// Strata whose albedo is 1 or more, by a quadrature much finer than the term's, get a limit below 1
-// that makes up for what the penalty and the term's own quadrature leave; where an albedo is above 1
-// between strata, another one is added there. What is left in the end is removed exactly.
+// From round to round the albedos are measured by a quadrature much finer than the energy term's.
+// Each stratum's limit then makes up for what the term's own quadrature misses, and strata are added
+// where an albedo is above 1. What is left in the end is removed exactly.
 //
 // [1] R. Hettich, K. Kortanek. Semi-Infinite Programming: Theory, Methods, and Applications. SIAM
 //     Review 35(3), 1993: exchange methods.
@@ -27,7 +27,7 @@ class EnergyConstraints {
   // Measures the network. Returns its largest directional albedo.
   double Measure(const std::vector<double>& weights);
 
-  // From what was measured last: adds strata, and moves limits.
+  // Adds strata where the albedos that were measured last are too large.
   void Exchange();
 
   const std::vector<EnergyStratum>& strata() const { return strata_; }

@@ -34,10 +34,10 @@ constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
 constexpr std::size_t kCurvatureGrowth = 4;
 constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
 
-// Of the energy term's stages after the first.
+// Of the stages with the energy term.
 constexpr int kMostEnergyRounds = 16, kRoundIterations = 40;
 constexpr double kSmallCorrection = 0.02;  // of the mean absolute log error
-static const double kEnergyShare = getenv("KES")?atof(getenv("KES")):1.0;
+constexpr double kWeightGrowth = 10.0, kMostOverBalance = 30.0;
 
 class Fitter {
  public:
@@ -96,31 +96,16 @@ class Fitter {
     }
   }
 
-  // Brings all directional albedos below 1, by the energy term and what it leaves undone by
-  // lowering the network as a whole. Each round the term starts with a weight at which it costs what
-  // the rest does: where its square outweighs the rest by far, the fit gives up whole lobes.
-  void ConserveEnergy(FitProblem problem) {
+  // Brings all directional albedos below 1, by the energy term and, what that leaves undone, by
+  // lowering the network as a whole.
+  void ConserveEnergy(const FitProblem& problem) {
     EnergySummary& energy = summary_.energy;
     EnergyConstraints constraints(problem);
     energy.first_max_albedo = energy.max_albedo = constraints.Measure(weights_);
-    double weight=1e9;
-    const bool has_term = options_.solver != Solver::kAdam;
-    while (has_term && energy.rounds < kMostEnergyRounds && MayContinue()) {
-      const double error = MakeObjective(problem, validation_samples_)->MeanAbsLogError(weights_.data());
-      if (CorrectionOf(energy.max_albedo) < kSmallCorrection * error) break;
-      constraints.Exchange();
-      strata_ = constraints.strata();
-      weight = std::min(weight*10, (energy.rounds?30:1)*BalancedEnergyWeight(problem)); problem.energy_weight = weight;
-      RunStages(problem, std::min(kRoundIterations, options_.max_iterations));
-      energy.max_albedo = constraints.Measure(weights_);
-      ++energy.rounds;
-      fprintf(stderr,"round %d w %g strata %zu max %.8f err %.6f it %d t %.2f\n", energy.rounds, problem.energy_weight, strata_.size(), energy.max_albedo, heldout_?heldout_->MeanAbsLogError(weights_.data()):0, summary_.iterations, stopwatch_.Seconds());
-    }
-    energy.strata = strata_.size();
+    if (options_.solver != Solver::kAdam) RunEnergyRounds(problem, &constraints);
     if (energy.max_albedo <= kMostAlbedo) return;
     energy.correction = LowerToConserve(problem.Shape(), &weights_);
     energy.max_albedo = constraints.Measure(weights_);
-    fprintf(stderr,"corr %g max %.8f err %.6f t %.2f\n", energy.correction, energy.max_albedo, heldout_?heldout_->MeanAbsLogError(weights_.data()):0, stopwatch_.Seconds());
   }
 
   // Whether neither the user nor the clock has ended the fit.
@@ -142,13 +127,36 @@ class Fitter {
  private:
   enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };
 
+  // The term's weight starts where the term costs as much as the rest, and grows from round to round
+  // until what remains above 1 is small: where its square outweighs the rest by far, a fit gives up
+  // whole lobes.
+  void RunEnergyRounds(FitProblem problem, EnergyConstraints* constraints) {
+    EnergySummary& energy = summary_.energy;
+    while (energy.rounds < kMostEnergyRounds && MayContinue()) {
+      const double error =
+          MakeObjective(problem, validation_samples_)->MeanAbsLogError(weights_.data());
+      if (CorrectionOf(energy.max_albedo) < kSmallCorrection * error) break;
+      constraints->Exchange();
+      strata_ = constraints->strata();
+      const double balanced = BalancedEnergyWeight(problem);
+      problem.energy_weight = energy.rounds == 0
+                                  ? std::min(problem.energy_weight, balanced)
+                                  : std::min(problem.energy_weight * kWeightGrowth,
+                                             kMostOverBalance * balanced);
+      RunStages(problem, std::min(kRoundIterations, options_.max_iterations));
+      energy.max_albedo = constraints->Measure(weights_);
+      energy.strata = strata_.size();
+      ++energy.rounds;
+    }
+  }
+
   // With which the energy term costs as much as all else.
   double BalancedEnergyWeight(FitProblem problem) const {
     problem.energy_weight = 0.0;
     const double rest = MakeObjective(problem, validation_samples_)->Cost(weights_.data());
     problem.energy_weight = 1.0;
     const double all = MakeObjective(problem, validation_samples_, strata_)->Cost(weights_.data());
-    return all > rest ? kEnergyShare*rest / (all - rest) : 1.0;
+    return all > rest ? rest / (all - rest) : 1.0;
   }
 
   // What it ended for; kNone: for the solver's own reasons.

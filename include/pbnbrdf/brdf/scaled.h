@@ -28,9 +28,8 @@ class ScaledBrdf final : public Brdf {
   double factor_;
 };
 
-// The largest directional albedo (albedo.h) over the channels and incident angles of 0, 1, ..., 85
-// degrees, nearer to the horizon tables have no data; of an anisotropic source over azimuths of the
-// light too, every 15 degrees. Throws Error if an albedo isn't finite.
+// The largest directional albedo (albedo.h) over the channels and incident directions of up to 85
+// degrees: nearer to the horizon tables have no data. Throws Error if an albedo isn't finite.
 double LargestAlbedo(const Brdf& brdf);
 
 // The source times the factor that makes its LargestAlbedo `albedo`. Measured scales are uncertain,
