@@ -64,6 +64,9 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
   measures["material"] = FLAGS_material;
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
+  measures["restarts"] = summary.restarts;
+  measures["failed_factorizations"] = summary.failed_factorizations;
+  measures["rejected_steps"] = summary.rejected_steps;
   measures["samples_used"] = summary.samples;
   measures["energy_stage"] = summary.energy_stage;
   measures["precision_limited"] = summary.precision_limited;
@@ -152,6 +155,9 @@ int RunFit(const std::string&) {
               << NameOf(kTerminations, fit.summary.termination) << " after "
               << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
               << MeasuresText(measures);
+    if (fit.summary.termination == Termination::kDiverged) {
+      std::cout << "diverged: " << fit.summary.message << "\n";
+    }
     if (fit.summary.precision_limited) {
       std::cout << "single precision limited the fit: --precision=double goes further\n";
     }

@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pace.h"
@@ -28,6 +29,10 @@ constexpr double kRoundingShare = 0.01;
 constexpr int kStartIterations = 12;
 constexpr std::uint64_t kStartSeed = 0xbf58476d1ce4e5b9;
 
+constexpr int kMostRestarts = 5;
+constexpr std::uint64_t kRestartSeed = 0x94d049bb133111eb;
+constexpr std::size_t kStartSamples = 1024;  // that tell whether weights are a start
+
 // When a stage is slow, more samples promise more than more iterations; idle, nothing does.
 constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
 constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
@@ -46,7 +51,6 @@ class Fitter {
     const bool grows = options.solver != Solver::kAdam;  // which draws its own few
     stream_.Draw(grows ? std::min(problem.first_samples, most_samples_) : most_samples_, &samples_);
     weights_ = options.initial_weights;
-    if (weights_.empty()) weights_ = RandomWeights(problem, 0);
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
@@ -54,12 +58,28 @@ class Fitter {
     });
   }
 
+  // Where the first stage starts: at the given weights, or at random ones. Throws Error if these
+  // lead nowhere.
+  void Start(const FitProblem& problem) {
+    if (weights_.empty()) return DrawStart(problem, 0);
+    const StartQuality quality = JudgeStart(problem);
+    if (quality == StartQuality::kNotFinite) {
+      Fail("initial_weights: the cost or its gradient isn't finite there");
+    }
+    if (quality == StartQuality::kStuck) {
+      Fail("initial_weights: the gradient is 0 there and the cost isn't");
+    }
+    if (quality == StartQuality::kConstant) {
+      Fail("initial_weights: a constant network that stays one: a layer's units are all dead");
+    }
+  }
+
   // Leaves the best of several short runs.
   void RunStarts(const FitProblem& problem) {
     std::vector<double> best;
     double least = std::numeric_limits<double>::infinity();
     for (int start = 0; start < options_.starts && MayContinue(); ++start) {
-      weights_ = RandomWeights(problem, start);
+      if (start > 0) DrawStart(problem, start);
       StageOptions stage = MakeStage();
       stage.max_iterations = std::min(kStartIterations, options_.max_iterations);
       stage.on_iteration = [&](int iteration, double cost) { return Report(iteration, cost); };
@@ -127,6 +147,7 @@ class Fitter {
     Run(problem, stage);
     if (summary_.termination == Termination::kConverged)
       return Next(/*overfit=*/1.0, /*is_idle=*/true);
+    if (summary_.termination == Termination::kDiverged) return End::kNoGain;
     if (end != End::kNone && end != End::kInterrupted) {
       summary_.termination = Termination::kConverged;
       summary_.message = "neither more samples nor more iterations help";
@@ -150,21 +171,67 @@ class Fitter {
     return stage;
   }
 
-  // Returns the cost.
+  // Returns the cost. A stage whose cost isn't finite at its start leaves the cost as it was, which
+  // is that of the weights that the stage before it has left.
   double Run(const FitProblem& problem, const StageOptions& stage) {
     const StageResult result = Minimize(problem, samples_, stage);
-    summary_.final_cost = result.cost;
+    if (std::isfinite(result.cost)) summary_.final_cost = result.cost;
     summary_.iterations += result.iterations;
+    summary_.failed_factorizations += result.failed_factorizations;
+    summary_.rejected_steps += result.rejected_steps;
     iterations_left_ -= result.iterations;
     summary_.termination = result.termination;
     summary_.message = result.message;
     return result.cost;
   }
 
-  // Of the start-th start.
-  std::vector<double> RandomWeights(const FitProblem& problem, int start) const {
-    return InitialWeights(problem.Shape(), samples_, problem.seed + start * kStartSeed,
-                          problem.initialization);
+  enum class StartQuality { kGood, kConstant, kStuck, kNotFinite };
+
+  // Whether a fit can go on from the weights. kConstant: the material isn't constant but the network
+  // stays so, since no weights but the last biases have a gradient, as with a layer of dead units;
+  // kStuck: none at all has.
+  StartQuality JudgeStart(const FitProblem& problem) const {
+    const auto samples = std::span(samples_).first(std::min(kStartSamples, samples_.size()));
+    const NetworkShape shape = problem.Shape();
+    const int last = shape.num_layers() - 1, row = shape.in(last) + 1;
+    double cost = 0.0;
+    std::vector<double> gradient(shape.num_weights());
+    if (!MakeObjective(problem, samples)->Gradient(weights_.data(), &cost, gradient.data())) {
+      return StartQuality::kNotFinite;
+    }
+    if (cost == 0.0) return StartQuality::kGood;
+    bool stuck = true;
+    for (int i = 0; i < shape.num_weights(); ++i) {
+      if (gradient[i] == 0.0) continue;
+      stuck = false;
+      const int within_row = i - shape.offset(last);
+      if (within_row < 0 || within_row % row != row - 1) return StartQuality::kGood;
+    }
+    if (stuck) return StartQuality::kStuck;
+    const bool varies = std::any_of(samples.begin(), samples.end(), [&](const BrdfSample& sample) {
+      return sample.value != samples.front().value;
+    });
+    return varies ? StartQuality::kConstant : StartQuality::kGood;
+  }
+
+  // Random weights of the start-th start: the first of a few that a fit can go on from. Those of a
+  // constant network have to do if there are no others.
+  void DrawStart(const FitProblem& problem, int start) {
+    std::vector<double> constant;
+    for (int restart = 0; restart <= kMostRestarts; ++restart) {
+      const std::uint64_t seed = problem.seed + static_cast<std::uint64_t>(start) * kStartSeed +
+                                 static_cast<std::uint64_t>(restart) * kRestartSeed;
+      weights_ = InitialWeights(problem.Shape(), samples_, seed, problem.initialization);
+      const StartQuality quality = JudgeStart(problem);
+      if (quality == StartQuality::kGood) return;
+      if (quality == StartQuality::kConstant && constant.empty()) constant = weights_;
+      if (restart < kMostRestarts) ++summary_.restarts;
+    }
+    if (constant.empty()) {
+      Fail("no start: at each of ", kMostRestarts + 1,
+           " random ones the cost isn't finite or its gradient is 0");
+    }
+    weights_ = constant;
   }
 
   // What a slow stage wants; kNone: to go on.
@@ -232,11 +299,13 @@ class Fitter {
 Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   Fitter fitter(material, problem, options);
   if (options.solver == Solver::kAdam) {  // all terms from the start, as published
+    fitter.Start(problem);
     fitter.RunStages(problem);
     return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish(problem)};
   }
   FitProblem without_energy = problem;
   without_energy.energy_weight = 0.0;
+  fitter.Start(without_energy);
   if (options.starts > 1) fitter.RunStarts(without_energy);
   fitter.RunStages(without_energy);
   const bool gains_energy = problem.energy_weight > 0.0 &&
