@@ -83,9 +83,9 @@ sanitize() {
 # experiments NAME [ARGUMENT ...]: a program of experiments/; its table and figure in build/results.
 experiments() {
   case ${1:-} in
-    solver_comparison | jacobian_cost | scaling) ;;
+    solver_comparison | jacobian_cost | scaling | stability) ;;
     *)
-      echo "usage: ./do experiments solver_comparison | jacobian_cost | scaling [--help | ARGUMENT ...]" >&2
+      echo "usage: ./do experiments solver_comparison | jacobian_cost | scaling | stability [--help | ARGUMENT ...]" >&2
       exit 2
       ;;
   esac
