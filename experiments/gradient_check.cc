@@ -11,33 +11,36 @@ namespace {
 
 constexpr int kRows = 7;  // of Ridders' table: steps from h to h / 64
 constexpr double kFirstSteps[] = {1e-2, 1e-4, 1e-6};
-constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();  // of a cost
+constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 struct Slope {
   double value = 0.0;
   double error = std::numeric_limits<double>::infinity();
 };
 
-// Of f at 0. f(t) must be finite for |t| <= first_step, or the error is infinite.
+// Of f at 0. f(t) must be finite for |t| <= first_step, or the error is infinite. f is rounded as its
+// value and its root are, the residuals being differences of numbers of about 1, and by `floor`.
 template <typename Function>
-Slope Ridders(Function f, double f0, double first_step) {
+Slope Ridders(Function f, double f0, double first_step, double floor) {
   std::array<double, kRows> row, last_row, jumps;
   Slope best;
   for (int i = 0; i < kRows; ++i) {
     const double h = std::ldexp(first_step, -i);
     const double up = f(h), down = f(-h);
-    const double rounding = kRounding * (std::abs(up) + std::abs(down) + std::abs(f0)) / h;
+    const double largest = std::max({up, down, f0});  // costs aren't negative
+    const double rounding = (kRounding * (largest + std::sqrt(largest)) + floor) / h;
     row[0] = (up - down) / (2.0 * h);
     jumps[i] = (up - 2.0 * f0 + down) / h;
     if (!std::isfinite(row[0]) || !std::isfinite(jumps[i])) return {};
+    // Where f is smooth the jump is h f'', which the extrapolation takes away.
+    const auto jump = [&](int k) { return std::abs(2.0 * jumps[k] - jumps[k - 1]); };
     double power = 4.0;
     for (int j = 1; j <= i; ++j, power *= 4.0) {
       row[j] = (power * row[j - 1] - last_row[j - 1]) / (power - 1.0);
-      // The jump is h f'' where f is smooth, which the extrapolation takes away.
-      const double jump = std::abs(2.0 * jumps[i] - jumps[i - 1]);
+      if (i < 2) continue;
       const double spread =
           std::max(std::abs(row[j] - row[j - 1]), std::abs(row[j] - last_row[j - 1]));
-      const double error = spread + jump + rounding;
+      const double error = spread + std::max(jump(i), jump(i - 1)) + rounding;
       if (error < best.error) best = {row[j], error};
     }
     last_row = row;
@@ -66,8 +69,8 @@ void GradientCheck::Add(const GradientCheck& other) {
   unresolved += other.unresolved;
 }
 
-GradientCheck CheckGradient(Objective* objective, const std::vector<double>& weights,
-                            int directions, unsigned seed) {
+GradientCheck CheckGradient(Objective* objective, double loss_scale,
+                            const std::vector<double>& weights, int directions, unsigned seed) {
   GradientCheck check;
   double cost = 0.0;
   std::vector<double> gradient(weights.size()), moved(weights.size());
@@ -85,7 +88,7 @@ GradientCheck CheckGradient(Objective* objective, const std::vector<double>& wei
     };
     Slope numeric;
     for (double step : kFirstSteps) {
-      const Slope slope = Ridders(f, f0, step);
+      const Slope slope = Ridders(f, f0, step, kRounding * loss_scale * loss_scale);
       if (slope.error < numeric.error) numeric = slope;
     }
     double analytic = 0.0, scale = std::abs(numeric.value);

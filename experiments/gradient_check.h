@@ -2,8 +2,9 @@
 //
 // Along a random direction d the slope g'd is compared with Ridders' extrapolation of central
 // differences [1], from several first steps, of which the one with the least error estimate counts.
-// The estimate contains the rounding of the cost and the jump of the one-sided slopes, extrapolated
-// to a step of 0: at a kink (relu, |r|, albedo = 1) near the point it is as large as the kink. A
+// The estimate contains the rounding of the cost and the jump from the slope on one side to that on
+// the other, extrapolated to a step of 0 from two pairs of steps: at a kink (relu, |r|, albedo = 1)
+// near the point it is as large as the kink. A
 // direction whose estimate exceeds kResolution is unresolved: it is counted, not judged. What is
 // judged is chosen by the cost alone, so a wrong gradient can't hide.
 //
@@ -19,7 +20,7 @@ namespace pbnbrdf {
 
 struct GradientCheck {
   // Both relative to sum |g_i d_i| or the numeric slope, whichever is larger.
-  static constexpr double kResolution = 1e-5;
+  static constexpr double kResolution = 1e-6;
   double worst_error = 0.0;  // over the resolved directions
   int resolved = 0, unresolved = 0;
 
@@ -29,7 +30,9 @@ struct GradientCheck {
 // directions: how many, each with components uniform in +-(|w_i| + rms(w) / 10 + 0.001). All are
 // unresolved where the cost or its gradient isn't finite. `objective` should be one of double
 // precision.
-GradientCheck CheckGradient(Objective* objective, const std::vector<double>& weights,
-                            int directions, unsigned seed);
+// loss_scale: the problem's. Robust losses are computed as differences of numbers of about its
+// square, so that they are rounded as such.
+GradientCheck CheckGradient(Objective* objective, double loss_scale,
+                            const std::vector<double>& weights, int directions, unsigned seed);
 
 }  // namespace pbnbrdf

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <fstream>
@@ -27,6 +28,7 @@ DEFINE_int32(jobs, 2, "processes at a time, each of one thread");
 DEFINE_string(sgd, "", "parameters of SGD materials (CSV), which take part too");
 DEFINE_int32(first_run, -1, "internal, of a child process: does the runs from this one on");
 DEFINE_int32(run_count, 0, "internal: so many");
+DEFINE_int32(crash_at, -1, "internal, of tests: this run ends its process as a crash does");
 
 namespace pbnbrdf {
 namespace {
@@ -67,6 +69,7 @@ void RunChunk() {
   for (int run = 0; run < FLAGS_first_run + FLAGS_run_count; ++run) {
     const StabilityCase next = sweep.Next();
     if (run < FLAGS_first_run) continue;
+    if (run == FLAGS_crash_at) std::abort();
     alarm(kTimeout);
     StabilityRecord record = RunStabilityCase(next);
     record.run = run;
@@ -119,6 +122,7 @@ class Sweep {
             StrCat("--max_iterations=", FLAGS_max_iterations),
             StrCat("--samples=", FLAGS_samples),
             "--sgd=" + FLAGS_sgd,
+            StrCat("--crash_at=", FLAGS_crash_at),
             StrCat("--first_run=", chunk.first),
             StrCat("--run_count=", chunk.count)};
   }

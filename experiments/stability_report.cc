@@ -1,10 +1,10 @@
 #include "stability_report.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <regex>
 #include <sstream>
 
 #include "curves.h"
@@ -99,7 +99,7 @@ std::string MessageTable(const std::vector<StabilityRecord>& records, const std:
   std::map<std::string, std::pair<int, int>> kinds;  // how many, and the first of them
   for (const StabilityRecord& record : records) {
     if (record.outcome != outcome) continue;
-    const std::string text = outcome == "non-finite" ? record.non_finite : record.message;
+    const std::string& text = outcome == "non-finite" ? record.non_finite : record.message;
     ++kinds.try_emplace(MessageKind(text), 0, record.run).first->second.first;
   }
   if (kinds.empty()) return "None.\n";
@@ -113,23 +113,8 @@ std::string MessageTable(const std::vector<StabilityRecord>& records, const std:
 }  // namespace
 
 std::string MessageKind(const std::string& message) {
-  std::string kind;
-  for (std::size_t i = 0; i < message.size(); ++i) {
-    const auto is_digit = [&](std::size_t at) {
-      return at < message.size() && std::isdigit(static_cast<unsigned char>(message[at])) != 0;
-    };
-    if (!is_digit(i)) {
-      kind += message[i];
-      continue;
-    }
-    while (is_digit(i + 1) ||
-           (i + 1 < message.size() && (message[i + 1] == '.' || message[i + 1] == 'e') &&
-            (is_digit(i + 2) || message[i + 1] == 'e'))) {
-      ++i;
-    }
-    kind += '#';
-  }
-  return kind;
+  static const std::regex number("[0-9]+(\\.[0-9]+)?(e[-+]?[0-9]+)?");
+  return std::regex_replace(message, number, "#");
 }
 
 std::vector<double> ErrorRatios(const std::vector<StabilityFactor>& factors,
@@ -147,9 +132,12 @@ std::vector<double> ErrorRatios(const std::vector<StabilityFactor>& factors,
   }
   std::vector<double> ratios;
   for (const StabilityRecord& record : records) {
-    const double median = record.outcome == "ok" ? Median(errors[group_of(record)]) : 0.0;
-    ratios.push_back(median > 0.0 ? record.error / median
-                                  : std::numeric_limits<double>::quiet_NaN());
+    if (record.outcome != "ok") {
+      ratios.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    const double median = Median(errors[group_of(record)]);
+    ratios.push_back(record.error / std::max(median, kLeastMedian));
   }
   return ratios;
 }

@@ -18,7 +18,10 @@ std::string StabilityMarkdown(const std::vector<StabilityFactor>& factors,
 // The message with each number in it as '#'.
 std::string MessageKind(const std::string& message);
 
-// Each record's error over the median of its group; NaN where either isn't known or the median is 0.
+// A median below this counts as this: that of a group that fits to rounding is no measure.
+inline constexpr double kLeastMedian = 1e-4;
+
+// Each record's error over the median of its group, or NaN unless its outcome is "ok".
 std::vector<double> ErrorRatios(const std::vector<StabilityFactor>& factors,
                                 const std::vector<StabilityRecord>& records);
 

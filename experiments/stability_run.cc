@@ -204,9 +204,10 @@ GradientCheck CheckGradients(const Brdf& material, const StabilityCase& c,
   const unsigned seed = static_cast<unsigned>(problem.seed);
   for (int iterations : {0, c.options.max_iterations / 3}) {
     const std::vector<double> weights = FitFor(material, c, iterations).weights;
-    check.Add(CheckGradient(objective.get(), weights, kCheckedDirections, seed));
+    check.Add(
+        CheckGradient(objective.get(), problem.loss_scale, weights, kCheckedDirections, seed));
   }
-  check.Add(CheckGradient(objective.get(), last, kCheckedDirections, seed));
+  check.Add(CheckGradient(objective.get(), problem.loss_scale, last, kCheckedDirections, seed));
   return check;
 }
 

@@ -146,11 +146,13 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
       return stop(Termination::kConverged,
                   StrCat("mean cost of the last ", kWindow,
                          " epochs and of those before: ", MeanCost(costs, costs.size(), kWindow),
-                         ", ", MeanCost(costs, costs.size() - kWindow, kWindow)));
+                         ", ", MeanCost(costs, costs.size() - kWindow, kWindow),
+                         "; the best weights are those after epoch ", best));
     }
     if (result.iterations >= options.max_iterations) {
-      return stop(Termination::kMaxIterations,
-                  StrCat(result.iterations, " epochs, the best weights after epoch ", best));
+      return stop(
+          Termination::kMaxIterations,
+          StrCat(result.iterations, " epochs; the best weights are those after epoch ", best));
     }
     if (out_of_time()) return stop(Termination::kMaxSeconds, "the time is used up");
     ++result.iterations;

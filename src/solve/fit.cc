@@ -31,6 +31,7 @@ constexpr std::uint64_t kStartSeed = 0xbf58476d1ce4e5b9;
 
 constexpr int kMostRestarts = 5;
 constexpr std::uint64_t kRestartSeed = 0x94d049bb133111eb;
+constexpr double kRoundingSpread = 1e-6;
 constexpr std::size_t kStartSamples = 1024;  // that tell whether weights are a start
 
 // When a stage is slow, more samples promise more than more iterations; idle, nothing does.
@@ -38,6 +39,17 @@ constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
 constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
 constexpr std::size_t kCurvatureGrowth = 4;
 constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
+
+// By more than rounding makes of a constant.
+bool Varies(const std::vector<Rgb>& values) {
+  return std::any_of(values.begin(), values.end(), [&](const Rgb& value) {
+    for (int c = 0; c < NetworkShape::kChannels; ++c) {
+      const double first = values.front()[c];
+      if (std::abs(value[c] - first) > kRoundingSpread * (1.0 + first)) return true;
+    }
+    return false;
+  });
+}
 
 class Fitter {
  public:
@@ -188,30 +200,28 @@ class Fitter {
   enum class StartQuality { kGood, kConstant, kStuck, kNotFinite };
 
   // Whether a fit can go on from the weights. kConstant: the material isn't constant but the network
-  // stays so, since no weights but the last biases have a gradient, as with a layer of dead units;
-  // kStuck: none at all has.
+  // is and stays so, since no weight of its first layer has a gradient, as with a layer of dead units;
+  // kStuck: no weight at all has.
   StartQuality JudgeStart(const FitProblem& problem) const {
     const auto samples = std::span(samples_).first(std::min(kStartSamples, samples_.size()));
     const NetworkShape shape = problem.Shape();
-    const int last = shape.num_layers() - 1, row = shape.in(last) + 1;
     double cost = 0.0;
     std::vector<double> gradient(shape.num_weights());
     if (!MakeObjective(problem, samples)->Gradient(weights_.data(), &cost, gradient.data())) {
       return StartQuality::kNotFinite;
     }
-    if (cost == 0.0) return StartQuality::kGood;
-    bool stuck = true;
-    for (int i = 0; i < shape.num_weights(); ++i) {
-      if (gradient[i] == 0.0) continue;
-      stuck = false;
-      const int within_row = i - shape.offset(last);
-      if (within_row < 0 || within_row % row != row - 1) return StartQuality::kGood;
+    const auto rest = gradient.begin() + shape.block_size(0);
+    const auto is_zero = [](double slope) { return slope == 0.0; };
+    if (cost == 0.0 || !std::all_of(gradient.begin(), rest, is_zero)) return StartQuality::kGood;
+    if (std::all_of(rest, gradient.end(), is_zero)) return StartQuality::kStuck;
+    std::vector<DirectionPair> pairs;
+    std::vector<Rgb> wanted, values(samples.size());
+    for (const BrdfSample& sample : samples) {
+      pairs.push_back(sample.pair);
+      wanted.push_back(sample.value);
     }
-    if (stuck) return StartQuality::kStuck;
-    const bool varies = std::any_of(samples.begin(), samples.end(), [&](const BrdfSample& sample) {
-      return sample.value != samples.front().value;
-    });
-    return varies ? StartQuality::kConstant : StartQuality::kGood;
+    NeuralBrdf(shape, weights_).EvaluateUnclipped(pairs, values);
+    return Varies(wanted) && !Varies(values) ? StartQuality::kConstant : StartQuality::kGood;
   }
 
   // Random weights of the start-th start: the first of a few that a fit can go on from. Those of a
@@ -343,6 +353,9 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
       options.initial_weights.size() != static_cast<std::size_t>(problem.Shape().num_weights())) {
     Fail("initial_weights: ", options.initial_weights.size(), " numbers, a ",
          problem.Shape().Description(), " network has ", problem.Shape().num_weights());
+  }
+  for (double weight : options.initial_weights) {
+    if (!std::isfinite(weight)) Fail("initial_weights: one isn't finite");
   }
   if (options.curvature_samples < 1) Fail("curvature_samples = 0; must be >= 1");
   if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");
