@@ -1,5 +1,5 @@
-// stability.cc: thousands of small fits, many of them to what no fit should be asked for: what isn't
-// finite, what fails and how far a gradient is from numeric differences.
+// stability.cc: thousands of small fits, many of them to what no fit should be asked for: what
+// isn't finite, what fails and how far a gradient is from numeric differences.
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -39,10 +39,10 @@ constexpr char kUsage[] =
   stability --out_dir=results --runs=5000 --jobs=2
 
 The runs walk through the product of material, stress, solver, loss, terms, encoding, precision,
-activation, initialization, sampling and seed: each is the one of 16 random combinations that has the
-most pairs of levels that haven't appeared yet (pairwise_walk.h), so that all pairs do within the first
-few hundred. They run in processes of their own, some at a time: one that crashes, or a run that takes
-longer than two minutes, costs no other run. Writes stability.csv, a row for each run, and stability.md.
+activation, initialization, sampling and seed: each is the one of 16 random combinations that has
+the most pairs of levels that haven't appeared yet (pairwise_walk.h); the report says how many have.
+They run in processes of their own, some at a time: one that crashes, or a run that takes longer
+than two minutes, costs no other run. Writes stability.csv, a row for each run, and stability.md.
 )";
 
 constexpr int kChunk = 25;          // runs of a process

@@ -9,9 +9,9 @@
 
 namespace pbnbrdf {
 
-// A table for each factor, with a row for each level: runs, outcomes, what the solvers met, the worst
-// error as a ratio to the median of its group (the same material, solver and terms, ok runs only)
-// and the worst gradient error; then the kinds of Errors, numbers in their messages left out.
+// A table for each factor, with a row for each level: runs, outcomes, what the solvers met, the
+// worst error as a ratio to the median of its group (the same material, solver and terms, ok runs
+// only) and the worst gradient error; then the kinds of Errors, numbers in their messages left out.
 std::string StabilityMarkdown(const std::vector<StabilityFactor>& factors,
                               const std::vector<StabilityRecord>& records);
 

@@ -82,7 +82,7 @@ class Fitter {
       Fail("initial_weights: the gradient is 0 there and the cost isn't");
     }
     if (quality == StartQuality::kConstant) {
-      Fail("initial_weights: a constant network that stays one: a layer's units are all dead");
+      Fail("initial_weights: a constant network that stays one: its first layer has no gradient");
     }
   }
 
