@@ -63,6 +63,7 @@ class Fitter {
     const bool grows = options.solver != Solver::kAdam;  // which draws its own few
     stream_.Draw(grows ? std::min(problem.first_samples, most_samples_) : most_samples_, &samples_);
     weights_ = options.initial_weights;
+    summary_.final_cost = std::numeric_limits<double>::infinity();
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
@@ -157,6 +158,7 @@ class Fitter {
       return end == End::kNone;
     };
     Run(problem, stage);
+    if (!std::isfinite(summary_.final_cost)) Fail("no start: ", summary_.message);
     if (summary_.termination == Termination::kConverged)
       return Next(/*overfit=*/1.0, /*is_idle=*/true);
     if (summary_.termination == Termination::kDiverged) return End::kNoGain;

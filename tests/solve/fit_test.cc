@@ -411,6 +411,21 @@ TEST(FitBrdf, RefusesGivenWeightsThatLeadNowhere) {
   }
 }
 
+TEST(FitBrdf, SaysWhyWhereTheFirstStageCantStart) {
+  // The cost and its gradient are finite, J'J isn't in single precision.
+  FitProblem problem = SmallProblem();
+  problem.loss = Loss::kL2;
+  problem.log_weight = 2e39;
+  FitOptions options;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm}) {
+    options.solver = solver;
+    const std::string error =
+        ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
+    EXPECT_THAT(error, HasSubstr("no start: ")) << NameOf(kSolvers, solver);
+    EXPECT_THAT(error, testing::Not(HasSubstr("random"))) << "not of the gradient";
+  }
+}
+
 TEST(FitBrdf, AConstantNetworkIsAStartForAConstantMaterial) {
   const FitProblem problem = SmallProblem();
   FitOptions options;

@@ -84,10 +84,11 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options);
 // The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
 // same network to the last bit, whatever the number of threads. The energy term joins in a second
 // stage, if the directional albedo of the first stage's network exceeds 1 in a stratum; Adam, as
-// published, has it and all samples from the start. A solver that diverges ends the fit with the best
-// network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the material has next
-// to no data, and where there is no start: the cost isn't finite, or its gradient is 0 though the
-// cost isn't, at the given weights or at each of several random ones.
+// published, has it and all samples from the start. A solver that diverges ends the fit with the
+// best network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the material
+// has next to no data, and where there is no start: at the given weights, or at each of several
+// random ones, the cost or a derivative isn't finite, or the gradient is 0 and the cost isn't; or
+// the given network is constant and would stay so, the material not being constant.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf
