@@ -128,7 +128,12 @@ StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options
     summary.termination_type = ceres::CONVERGENCE;
     summary.final_cost = summary.iterations.back().cost;
   }
-  return ReadSummary(summary, callback);
+  StageResult result = ReadSummary(summary, callback);
+  // Where the gradient is 0 at the start, Ceres reports no iteration and no cost.
+  if (summary.iterations.empty() && summary.IsSolutionUsable()) {
+    result.cost = objective->Cost(weights->data());
+  }
+  return result;
 }
 
 }  // namespace pbnbrdf
