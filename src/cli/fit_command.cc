@@ -65,6 +65,9 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
   measures["scale_to_albedo"] = FLAGS_scale_to_albedo;
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
+  measures["restarts"] = summary.restarts;
+  measures["failed_factorizations"] = summary.failed_factorizations;
+  measures["rejected_steps"] = summary.rejected_steps;
   measures["samples_used"] = summary.samples;
   measures["energy_rounds"] = summary.energy.rounds;
   measures["precision_limited"] = summary.precision_limited;
@@ -153,6 +156,9 @@ int RunFit(const std::string&) {
               << NameOf(kTerminations, fit.summary.termination) << " after "
               << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
               << MeasuresText(measures);
+    if (fit.summary.termination == Termination::kDiverged) {
+      std::cout << "diverged: " << fit.summary.message << "\n";
+    }
     if (fit.summary.precision_limited) {
       std::cout << "single precision limited the fit: --precision=double goes further\n";
     }

@@ -38,9 +38,12 @@ HWY_INLINE void AllLogResiduals(const T* z, const double* targets, const double*
     // The functions above take neither what overflows nor what isn't finite.
     const V overflow = hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 706.0)), hn::Set(d, kInfinity));
     const V log = hn::Add(hn::MulAdd(hn::Zero(d), x, overflow), hn::Log1p(d, u));
-    hn::StoreU(hn::Sub(hn::LoadU(d, targets + k), log), d, residuals + k);
     const V slope = hn::Div(hn::Mul(hn::Add(f, one), cos), hn::Add(u, one));
-    hn::StoreU(hn::Neg(slope), d, slopes + k);
+    // At normal incidence log1p(expm1(x)) is x; computed, it is the logarithm of 0 from -37 down.
+    const auto normal = hn::Eq(cos, one);
+    const V exact_log = hn::IfThenElse(normal, x, log);
+    hn::StoreU(hn::Sub(hn::LoadU(d, targets + k), exact_log), d, residuals + k);
+    hn::StoreU(hn::Neg(hn::IfThenElse(normal, one, slope)), d, slopes + k);
   }
 }
 
@@ -57,12 +60,14 @@ HWY_INLINE void AbsoluteLossGradientOf(const T* z, const T* cos_i, const T* f, T
                                        T chromaticity_weight, T* gradient) {
   const hn::ScalableTag<T> d;
   const auto one = hn::Set(d, 1), least = hn::Set(d, T(1e-30));
+  // Beyond, where no reflectance lies, the gradient has come to its limit and f^ would overflow.
+  const auto largest = hn::Set(d, T(40));
   for (int n = 0; n < kBatch; n += static_cast<int>(hn::Lanes(d))) {
     const auto cos = hn::LoadU(d, cos_i + n), cos2 = hn::Mul(cos, cos);
     hn::Vec<decltype(d)> grown[3], fit[3];
     auto norm = hn::Zero(d), norm_fit = hn::Zero(d);
     for (int c = 0; c < 3; ++c) {
-      grown[c] = hn::Exp(d, hn::LoadU(d, z + c * kBatch + n));
+      grown[c] = hn::Exp(d, hn::Min(largest, hn::LoadU(d, z + c * kBatch + n)));
       fit[c] = hn::Sub(grown[c], one);
       const auto from = hn::LoadU(d, f + c * kBatch + n);
       norm = hn::MulAdd(from, from, norm);

@@ -75,6 +75,10 @@ class Adam {
   int steps_ = 0;
 };
 
+bool AreFinite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
 // The mean of the `count` costs that come before `end`.
 double MeanCost(const std::vector<double>& costs, std::size_t end, std::size_t count) {
   return std::accumulate(costs.begin() + (end - count), costs.begin() + end, 0.0) /
@@ -112,6 +116,7 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
   Adam state(problem, samples, adam, *weights);
   const auto objective = MakeCost(problem, samples);
   std::vector<double> last = *weights, costs;  // after each epoch, and at the start
+  int best = 0;                                // epoch
   StageResult result;
   result.cost = std::numeric_limits<double>::infinity();
   const auto out_of_time = [&] { return options.seconds_left && options.seconds_left() <= 0.0; };
@@ -122,11 +127,16 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
   };
   while (true) {
     costs.push_back(objective->Cost(last.data()));
-    if (!std::isfinite(costs.back())) {
-      Fail("Adam diverged in epoch ", result.iterations, "; try a smaller learning rate");
+    // Weights may overflow before the cost does: tanh makes 1 of an infinite sum.
+    if (!std::isfinite(costs.back()) || !AreFinite(last)) {
+      return stop(Termination::kDiverged,
+                  StrCat("the cost isn't finite after epoch ", result.iterations,
+                         "; the best weights are those after epoch ", best,
+                         "; try a smaller learning rate"));
     }
     if (costs.back() < result.cost) {
       result.cost = costs.back();
+      best = result.iterations;
       *weights = last;
     }
     if (options.on_iteration && !options.on_iteration(result.iterations, result.cost)) {
@@ -136,10 +146,13 @@ StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> 
       return stop(Termination::kConverged,
                   StrCat("mean cost of the last ", kWindow,
                          " epochs and of those before: ", MeanCost(costs, costs.size(), kWindow),
-                         ", ", MeanCost(costs, costs.size() - kWindow, kWindow)));
+                         ", ", MeanCost(costs, costs.size() - kWindow, kWindow),
+                         "; the best weights are those after epoch ", best));
     }
     if (result.iterations >= options.max_iterations) {
-      return stop(Termination::kMaxIterations, StrCat(result.iterations, " epochs"));
+      return stop(
+          Termination::kMaxIterations,
+          StrCat(result.iterations, " epochs; the best weights are those after epoch ", best));
     }
     if (out_of_time()) return stop(Termination::kMaxSeconds, "the time is used up");
     ++result.iterations;

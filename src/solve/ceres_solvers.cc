@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "pbnbrdf/base/error.h"
 
@@ -50,13 +52,16 @@ CeresOptions CommonOptions(const StageOptions& options, ceres::IterationCallback
   return ceres_options;
 }
 
+// Ceres prints whole vectors below the first line of some of its messages.
+std::string OneLine(const std::string& message) { return message.substr(0, message.find('\n')); }
+
 template <typename CeresSummary>
 StageResult ReadSummary(const CeresSummary& summary, const IterationCallback& callback) {
-  if (!summary.IsSolutionUsable()) Fail("the solver failed: ", summary.message);
   StageResult result;
-  result.cost = summary.final_cost;
+  result.cost =
+      summary.iterations.empty() ? std::numeric_limits<double>::infinity() : summary.final_cost;
   result.iterations = std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
-  result.message = summary.message;
+  result.message = OneLine(summary.message);
   if (callback.interrupted()) {
     result.termination = Termination::kInterrupted;
   } else if (summary.termination_type == ceres::CONVERGENCE) {
@@ -64,6 +69,8 @@ StageResult ReadSummary(const CeresSummary& summary, const IterationCallback& ca
   } else if (callback.out_of_time()) {
     result.termination = Termination::kMaxSeconds;
     result.message = "the time is used up";
+  } else if (!summary.IsSolutionUsable()) {
+    result.termination = Termination::kDiverged;
   } else {
     result.termination = Termination::kMaxIterations;
   }
@@ -99,7 +106,12 @@ StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options
   ceres_options.num_threads = 1;  // one block, whose threads are its own
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, problem, &summary);
-  return ReadSummary(summary, callback);
+  StageResult result = ReadSummary(summary, callback);
+  for (const ceres::IterationSummary& iteration : summary.iterations) {
+    if (iteration.iteration == 0 || iteration.step_is_successful) continue;
+    ++(iteration.step_is_valid ? result.rejected_steps : result.failed_factorizations);
+  }
+  return result;
 }
 
 StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options,
@@ -116,7 +128,12 @@ StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options
     summary.termination_type = ceres::CONVERGENCE;
     summary.final_cost = summary.iterations.back().cost;
   }
-  return ReadSummary(summary, callback);
+  StageResult result = ReadSummary(summary, callback);
+  // Where the gradient is 0 at the start, Ceres reports no iteration and no cost.
+  if (summary.iterations.empty() && summary.IsSolutionUsable()) {
+    result.cost = objective->Cost(weights->data());
+  }
+  return result;
 }
 
 }  // namespace pbnbrdf

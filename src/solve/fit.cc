@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "energy_conservation.h"
@@ -28,6 +29,11 @@ constexpr double kRoundingShare = 0.01;
 constexpr int kStartIterations = 12;
 constexpr std::uint64_t kStartSeed = 0xbf58476d1ce4e5b9;
 
+constexpr int kMostRestarts = 5;
+constexpr std::uint64_t kRestartSeed = 0x94d049bb133111eb;
+constexpr double kRoundingSpread = 1e-6;
+constexpr std::size_t kStartSamples = 1024;  // that tell whether weights are a start
+
 // When a stage is slow, more samples promise more than more iterations; idle, nothing does.
 constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
 constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
@@ -38,6 +44,17 @@ constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Ma
 constexpr int kMostEnergyRounds = 16, kRoundIterations = 40;
 constexpr double kSmallCorrection = 0.02;  // of the mean absolute log error
 constexpr double kWeightGrowth = 10.0, kMostOverBalance = 30.0;
+
+// By more than rounding makes of a constant.
+bool Varies(const std::vector<Rgb>& values) {
+  return std::any_of(values.begin(), values.end(), [&](const Rgb& value) {
+    for (int c = 0; c < NetworkShape::kChannels; ++c) {
+      const double first = values.front()[c];
+      if (std::abs(value[c] - first) > kRoundingSpread * (1.0 + first)) return true;
+    }
+    return false;
+  });
+}
 
 class Fitter {
  public:
@@ -52,7 +69,7 @@ class Fitter {
     const bool grows = options.solver != Solver::kAdam;  // which draws its own few
     stream_.Draw(grows ? std::min(problem.first_samples, most_samples_) : most_samples_, &samples_);
     weights_ = options.initial_weights;
-    if (weights_.empty()) weights_ = RandomWeights(problem, 0);
+    summary_.final_cost = std::numeric_limits<double>::infinity();
     if (!options.on_iteration) return;
     heldout_ = stopwatch_.Exclude([&] {
       return MakeObjective(problem, DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform,
@@ -60,12 +77,28 @@ class Fitter {
     });
   }
 
+  // Where the first stage starts: at the given weights, or at random ones. Throws Error if these
+  // lead nowhere.
+  void Start(const FitProblem& problem) {
+    if (weights_.empty()) return DrawStart(problem, 0);
+    const StartQuality quality = JudgeStart(problem);
+    if (quality == StartQuality::kNotFinite) {
+      Fail("initial_weights: the cost or its gradient isn't finite there");
+    }
+    if (quality == StartQuality::kStuck) {
+      Fail("initial_weights: the gradient is 0 there and the cost isn't");
+    }
+    if (quality == StartQuality::kConstant) {
+      Fail("initial_weights: a constant network that stays one: its first layer has no gradient");
+    }
+  }
+
   // Leaves the best of several short runs.
   void RunStarts(const FitProblem& problem) {
     std::vector<double> best;
     double least = std::numeric_limits<double>::infinity();
     for (int start = 0; start < options_.starts && MayContinue(); ++start) {
-      weights_ = RandomWeights(problem, start);
+      if (start > 0) DrawStart(problem, start);
       StageOptions stage = MakeStage();
       stage.max_iterations = std::min(kStartIterations, options_.max_iterations);
       stage.on_iteration = [&](int iteration, double cost) { return Report(iteration, cost); };
@@ -135,7 +168,7 @@ class Fitter {
     while (energy.rounds < kMostEnergyRounds && MayContinue()) {
       const double error =
           MakeObjective(problem, validation_samples_)->MeanAbsLogError(weights_.data());
-      if (CorrectionOf(energy.max_albedo) < kSmallCorrection * error) break;
+      if (CorrectionOf(energy.max_albedo) <= kSmallCorrection * error) break;
       constraints->Exchange();
       strata_ = constraints->strata();
       const double balanced = BalancedEnergyWeight(problem);
@@ -150,12 +183,13 @@ class Fitter {
     }
   }
 
-  // With which the energy term costs as much as all else.
+  // With which the energy term costs as much as all else; 0 where its cost isn't finite.
   double BalancedEnergyWeight(FitProblem problem) const {
     problem.energy_weight = 0.0;
     const double rest = MakeObjective(problem, validation_samples_)->Cost(weights_.data());
     problem.energy_weight = 1.0;
     const double all = MakeObjective(problem, validation_samples_, strata_)->Cost(weights_.data());
+    if (!std::isfinite(all)) return 0.0;
     return all > rest ? rest / (all - rest) : 1.0;
   }
 
@@ -175,8 +209,10 @@ class Fitter {
       return end == End::kNone;
     };
     Run(problem, stage);
+    if (!std::isfinite(summary_.final_cost)) Fail("no start: ", summary_.message);
     if (summary_.termination == Termination::kConverged)
       return Next(/*overfit=*/1.0, /*is_idle=*/true);
+    if (summary_.termination == Termination::kDiverged) return End::kNoGain;
     if (end != End::kNone && end != End::kInterrupted) {
       summary_.termination = Termination::kConverged;
       summary_.message = "neither more samples nor more iterations help";
@@ -200,21 +236,65 @@ class Fitter {
     return stage;
   }
 
-  // Returns the cost.
+  // Returns the cost. A stage whose cost isn't finite at its start leaves the cost as it was, which
+  // is that of the weights that the stage before it has left.
   double Run(const FitProblem& problem, const StageOptions& stage) {
     const StageResult result = Minimize(problem, samples_, stage);
-    summary_.final_cost = result.cost;
+    if (std::isfinite(result.cost)) summary_.final_cost = result.cost;
     summary_.iterations += result.iterations;
+    summary_.failed_factorizations += result.failed_factorizations;
+    summary_.rejected_steps += result.rejected_steps;
     iterations_left_ -= result.iterations;
     summary_.termination = result.termination;
     summary_.message = result.message;
     return result.cost;
   }
 
-  // Of the start-th start.
-  std::vector<double> RandomWeights(const FitProblem& problem, int start) const {
-    return InitialWeights(problem.Shape(), samples_, problem.seed + start * kStartSeed,
-                          problem.initialization);
+  enum class StartQuality { kGood, kConstant, kStuck, kNotFinite };
+
+  // Whether a fit can go on from the weights. kConstant: the material isn't constant but the network
+  // is and stays so, since no weight of its first layer has a gradient, as with a layer of dead units;
+  // kStuck: no weight at all has.
+  StartQuality JudgeStart(const FitProblem& problem) const {
+    const auto samples = std::span(samples_).first(std::min(kStartSamples, samples_.size()));
+    const NetworkShape shape = problem.Shape();
+    double cost = 0.0;
+    std::vector<double> gradient(shape.num_weights());
+    if (!MakeObjective(problem, samples)->Gradient(weights_.data(), &cost, gradient.data())) {
+      return StartQuality::kNotFinite;
+    }
+    const auto rest = gradient.begin() + shape.block_size(0);
+    const auto is_zero = [](double slope) { return slope == 0.0; };
+    if (cost == 0.0 || !std::all_of(gradient.begin(), rest, is_zero)) return StartQuality::kGood;
+    if (std::all_of(rest, gradient.end(), is_zero)) return StartQuality::kStuck;
+    std::vector<DirectionPair> pairs;
+    std::vector<Rgb> wanted, values(samples.size());
+    for (const BrdfSample& sample : samples) {
+      pairs.push_back(sample.pair);
+      wanted.push_back(sample.value);
+    }
+    NeuralBrdf(shape, weights_).EvaluateUnclipped(pairs, values);
+    return Varies(wanted) && !Varies(values) ? StartQuality::kConstant : StartQuality::kGood;
+  }
+
+  // Random weights of the start-th start: the first of a few that a fit can go on from. Those of a
+  // constant network have to do if there are no others.
+  void DrawStart(const FitProblem& problem, int start) {
+    std::vector<double> constant;
+    for (int restart = 0; restart <= kMostRestarts; ++restart) {
+      const std::uint64_t seed = problem.seed + static_cast<std::uint64_t>(start) * kStartSeed +
+                                 static_cast<std::uint64_t>(restart) * kRestartSeed;
+      weights_ = InitialWeights(problem.Shape(), samples_, seed, problem.initialization);
+      const StartQuality quality = JudgeStart(problem);
+      if (quality == StartQuality::kGood) return;
+      if (quality == StartQuality::kConstant && constant.empty()) constant = weights_;
+      if (restart < kMostRestarts) ++summary_.restarts;
+    }
+    if (constant.empty()) {
+      Fail("no start: at each of ", kMostRestarts + 1,
+           " random ones the cost isn't finite or its gradient is 0");
+    }
+    weights_ = constant;
   }
 
   // What a slow stage wants; kNone: to go on.
@@ -284,14 +364,13 @@ Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& opt
   Fitter fitter(material, problem, options);
   FitProblem without_energy = problem;
   without_energy.energy_weight = 0.0;
-  if (options.solver == Solver::kAdam) {  // all terms from the start, as published
-    fitter.RunStages(problem, options.max_iterations);
-  } else {
-    if (options.starts > 1) fitter.RunStarts(without_energy);
-    fitter.RunStages(without_energy, options.max_iterations);
-  }
+  const bool is_adam = options.solver == Solver::kAdam;  // all terms from the start, as published
+  const FitProblem& first = is_adam ? problem : without_energy;
+  fitter.Start(first);
+  if (options.starts > 1) fitter.RunStarts(first);
+  fitter.RunStages(first, options.max_iterations);
   if (problem.energy_weight > 0.0) fitter.ConserveEnergy(problem);
-  return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish(without_energy)};
+  return {NeuralBrdf(problem.Shape(), fitter.weights()), fitter.Finish(first)};
 }
 
 }  // namespace
@@ -321,6 +400,9 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
       options.initial_weights.size() != static_cast<std::size_t>(problem.Shape().num_weights())) {
     Fail("initial_weights: ", options.initial_weights.size(), " numbers, a ",
          problem.Shape().Description(), " network has ", problem.Shape().num_weights());
+  }
+  for (double weight : options.initial_weights) {
+    if (!std::isfinite(weight)) Fail("initial_weights: one isn't finite");
   }
   if (options.curvature_samples < 1) Fail("curvature_samples = 0; must be >= 1");
   if (options.threads < 0) Fail("threads = ", options.threads, "; must be >= 0");

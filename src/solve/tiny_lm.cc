@@ -73,25 +73,31 @@ class TinyLm {
         cholesky_(static_cast<int>(best->size())) {}
 
   StageResult Run() {
-    if (!Linearize(x_, &at_))
-      Fail("the cost isn't finite at the first weights: check the terms' weights and loss_scale");
+    if (!Linearize(x_, &at_)) {
+      result_.cost = std::numeric_limits<double>::infinity();
+      Stop(Termination::kDiverged, "the cost or a derivative isn't finite at the first weights");
+      return result_;
+    }
     StepJudge judge(at_.cost);
     result_.cost = at_.cost;
     FixScale();
-    while (MayContinue(judge.least())) {
+    while (MayContinue(judge.least()) && HasGradient()) {
       ++result_.iterations;
       double predicted = 0.0;
-      const double cost = ComputeStep(&predicted) ? objective_->Cost(trial_.data())
-                                                  : std::numeric_limits<double>::infinity();
+      double cost = std::numeric_limits<double>::infinity();
+      const bool has_step = ComputeStep(&predicted);
+      if (has_step) cost = objective_->Cost(trial_.data());
       const double quality = judge.Quality(cost, predicted);
       const double change = std::abs(at_.cost - cost);
       if (!(quality > kLeastDecrease)) {
+        ++(has_step ? result_.rejected_steps : result_.failed_factorizations);
         ShrinkRadius();
         if (Stalled(change)) break;
         continue;
       }
       const double tolerated = options_.function_tolerance * at_.cost;
       if (!Linearize(trial_, &next_)) {
+        ++result_.failed_factorizations;
         ShrinkRadius();
         continue;
       }
@@ -101,8 +107,7 @@ class TinyLm {
       if (cost <= judge.least()) Keep(cost);
       GrowRadius(quality);
       if (change <= tolerated) {
-        Stop(Termination::kConverged, StrCat("|cost change| / cost: ", change / at_.cost,
-                                             " <= ", options_.function_tolerance));
+        StopAtTolerance(change);
         break;
       }
     }
@@ -136,6 +141,18 @@ class TinyLm {
     return false;
   }
 
+  void StopAtTolerance(double change) {
+    Stop(Termination::kConverged, StrCat("|cost change|: ", change, " <= ",
+                                         options_.function_tolerance, " * cost ", at_.cost));
+  }
+
+  // Where it is 0 no step leads anywhere: at a perfect fit, or with units that are all dead.
+  bool HasGradient() {
+    const bool is_zero = std::all_of(at_.gradient.begin(), at_.gradient.end(),
+                                     [](double slope) { return slope == 0.0; });
+    return !is_zero || Stop(Termination::kConverged, "the gradient is 0");
+  }
+
   // When the radius is spent, or the cost moves by no more than rounding makes it.
   bool Stalled(double change) {
     if (radius_ < kSmallestRadius) {
@@ -144,8 +161,7 @@ class TinyLm {
       return true;
     }
     if (change <= options_.function_tolerance * at_.cost) {
-      Stop(Termination::kConverged, StrCat("|cost change| / cost: ", change / at_.cost,
-                                           " <= ", options_.function_tolerance));
+      StopAtTolerance(change);
       return true;
     }
     return false;

@@ -152,7 +152,8 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
   EXPECT_THAT(fit.out, HasSubstr("mean_abs_log_error"));
   const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
   for (const char* key : {"mean_abs_log_error", "hrl", "hcl", "max_directional_albedo", "cost",
-                          "iterations", "seconds", "seed", "problem", "termination"}) {
+                          "iterations", "restarts", "failed_factorizations", "rejected_steps",
+                          "seconds", "seed", "problem", "termination"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
   EXPECT_EQ(summary["seed"], 7);

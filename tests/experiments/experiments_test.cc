@@ -1,5 +1,7 @@
 // Runs the programs of experiments/ with tiny settings.
 
+#include <set>
+
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
 #include "process.h"
@@ -246,6 +248,53 @@ TEST(Scaling, WritesTablesAndFigure) {
   ExpectFigure(folder / "results/scaling.svg");
 }
 
+constexpr char kStabilityHeader[] =
+    "run,material,stress,solver,loss,terms,encoding,precision,activation,initialization,sampling,"
+    "seed,outcome,message,non_finite,termination,iterations,restarts,failed_factorizations,"
+    "rejected_steps,cost,error,gradient_error,directions_resolved,directions_unresolved";
+
+TEST(Stability, WritesARowForEachRunAndTables) {
+  const TemporaryFolder folder;
+  const ProgramResult run =
+      RunIn(folder, "stability", {"--runs=30", "--max_iterations=3", "--samples=100", "--jobs=2"});
+  ASSERT_EQ(run.status, 0);
+  const auto rows = ReadRows(folder / "results/stability.csv", kStabilityHeader);
+  ASSERT_EQ(rows.size(), 30u);
+  std::set<std::string> runs;
+  for (const auto& row : rows) {
+    runs.insert(row[0]);
+    EXPECT_THAT(row[12], testing::AnyOf("ok", "error")) << row[13];
+    EXPECT_NE(row[13], "");
+    EXPECT_LT(ParseNumber("gradient_error", row[22]), 1e-5) << "run " << row[0];
+  }
+  EXPECT_EQ(runs.size(), 30u);
+  EXPECT_THAT(run.output, HasSubstr("### By stress"));
+  EXPECT_THAT(run.output, HasSubstr("### Errors by kind"));
+  EXPECT_EQ(Read(folder / "results/stability.md"), run.output);
+}
+
+TEST(Stability, ACrashCostsNoOtherRun) {
+  const TemporaryFolder folder;
+  const ProgramResult run =
+      RunIn(folder, "stability",
+            {"--runs=12", "--max_iterations=1", "--samples=50", "--jobs=1", "--crash_at=4"});
+  ASSERT_EQ(run.status, 0);
+  const auto rows = ReadRows(folder / "results/stability.csv", kStabilityHeader);
+  ASSERT_EQ(rows.size(), 12u);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row[12] == "crash", row[0] == "4");
+    EXPECT_NE(row[1], "");  // its material is known even so
+  }
+  EXPECT_THAT(run.output, HasSubstr("process ended with status #"));
+}
+
+TEST(Stability, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--runs=0", "--jobs=0", "--seeds=0", "--sgd=absent.csv"}) {
+    EXPECT_EQ(RunIn(folder, "stability", {flag}).status, 1) << flag;
+  }
+}
+
 TEST(Experiments, HelpNamesTheFlags) {
   const TemporaryFolder folder;
   const std::pair<const char*, const char*> kOwnFlags[] = {{"ablation", "--chromaticity_weights"},
@@ -257,6 +306,13 @@ TEST(Experiments, HelpNamesTheFlags) {
     EXPECT_EQ(run.status, 0);
     EXPECT_THAT(run.output, HasSubstr("--out_dir"));
     EXPECT_THAT(run.output, HasSubstr(own_flag));
+  for (const auto& [program, flag] :
+       {std::pair("solver_comparison", "--hidden"), std::pair("jacobian_cost", "--hidden"),
+        std::pair("scaling", "--hidden"), std::pair("stability", "--runs")}) {
+    const ProgramResult run = RunIn(folder, program, {"--help"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_THAT(run.output, HasSubstr("--out_dir"));
+    EXPECT_THAT(run.output, HasSubstr(flag));
     EXPECT_THAT(run.output, Not(HasSubstr("--minloglevel")));
   }
 }

@@ -30,6 +30,21 @@ TYPED_TEST(Kernels, LogResidualsHaveTheirSlopes) {
   });
 }
 
+TYPED_TEST(Kernels, LogResidualsAreExactAtNormalIncidence) {
+  // Where expm1 rounds to -1 and where it overflows, too.
+  using T = TypeParam;
+  const std::vector<double> targets(3 * kBatch, 1.0), cos_i(kBatch, 1.0);
+  for (T z : {T(-1e4), T(-40), T(-0.5), T(0), T(3), T(1e4)}) {
+    const std::vector<T> all(3 * kBatch, z);
+    ForEachInstructionSet([&](const char* set) {
+      std::vector<double> residuals(3 * kBatch), slopes(3 * kBatch);
+      LogResiduals(all.data(), targets.data(), cos_i.data(), residuals.data(), slopes.data());
+      for (double r : residuals) EXPECT_EQ(r, 1.0 - static_cast<double>(z)) << set;
+      for (double slope : slopes) EXPECT_EQ(slope, -1.0) << set;
+    });
+  }
+}
+
 TYPED_TEST(Kernels, LogResidualsPassOnWhatIsNotFinite) {
   using T = TypeParam;
   constexpr T kInfinity = std::numeric_limits<T>::infinity();
@@ -58,6 +73,18 @@ TYPED_TEST(Kernels, AbsoluteLossGradientStandsUpToLargeAndSmallOutputs) {
     EXPECT_NEAR(gradient[kBatch + n], n == 1 ? 0 : -2, 1e-6);
     EXPECT_LE(std::abs(gradient[2 * kBatch + n]), 2);  // a kink
   }
+}
+
+TYPED_TEST(Kernels, AbsoluteLossGradientIsThatOfTheLimitWhereReflectanceOverflows) {
+  using T = TypeParam;
+  const std::vector<T> cos_i(kBatch, T(0.5)), f(3 * kBatch, T(0.5));
+  std::vector<T> limit(3 * kBatch), gradient(3 * kBatch);
+  AbsoluteLossGradient(std::vector<T>(3 * kBatch, T(40)).data(), cos_i.data(), f.data(), T(2), T(1),
+                       limit.data());
+  AbsoluteLossGradient(std::vector<T>(3 * kBatch, T(500)).data(), cos_i.data(), f.data(), T(2),
+                       T(1), gradient.data());
+  EXPECT_EQ(gradient, limit);
+  for (T g : gradient) EXPECT_NEAR(g, 2.0 + 2.0 / 3.0, 1e-5);
 }
 
 TYPED_TEST(Kernels, ReflectanceSumsAreClamped) {

@@ -383,6 +383,146 @@ TEST(FitBrdf, CurvatureOfAPartOfTheSamplesServes) {
   EXPECT_LT(MeanAbsDifference(*gold, part.network), 3.0 * MeanAbsDifference(*gold, all.network));
 }
 
+// Weights of a network of a hidden layer whose units are all dead.
+std::vector<double> DeadWeights(const NetworkShape& shape) {
+  std::vector<double> weights = RandomWeights(shape, 0.5, /*seed=*/3);
+  for (int o = 1; o <= shape.out(0); ++o) weights[o * (shape.in(0) + 1) - 1] = -1000.0;
+  return weights;
+}
+
+TEST(FitBrdf, RefusesGivenWeightsThatLeadNowhere) {
+  FitProblem problem = SmallProblem();
+  const auto error = [&](std::vector<double> weights) {
+    FitOptions options;
+    options.initial_weights = std::move(weights);
+    return ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
+  };
+  for (Activation activation : {Activation::kTanh, Activation::kRelu}) {
+    problem.activation = activation;
+    const NetworkShape shape = problem.Shape();
+    EXPECT_THAT(error(DeadWeights(shape)), HasSubstr("a constant network that stays one"));
+    EXPECT_THAT(error(std::vector<double>(shape.num_weights(), 0.0)),
+                HasSubstr("a constant network that stays one"));
+    EXPECT_THAT(error(std::vector<double>(shape.num_weights(), 1e30)),
+                HasSubstr("the cost or its gradient isn't finite"));
+    std::vector<double> weights = RandomWeights(shape, 0.5, /*seed=*/3);
+    weights[1] = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(error(weights), HasSubstr("initial_weights: one isn't finite"));
+  }
+}
+
+TEST(FitBrdf, SaysWhyWhereTheFirstStageCantStart) {
+  // The cost and its gradient are finite, J'J isn't in single precision.
+  FitProblem problem = SmallProblem();
+  problem.loss = Loss::kL2;
+  problem.log_weight = 2e39;
+  FitOptions options;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm}) {
+    options.solver = solver;
+    const std::string error =
+        ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
+    EXPECT_THAT(error, HasSubstr("no start: ")) << NameOf(kSolvers, solver);
+    EXPECT_THAT(error, testing::Not(HasSubstr("random"))) << "not of the gradient";
+  }
+}
+
+TEST(FitBrdf, AConstantNetworkIsAStartForAConstantMaterial) {
+  const FitProblem problem = SmallProblem();
+  FitOptions options;
+  options.initial_weights = DeadWeights(problem.Shape());
+  options.max_iterations = 20;
+  const auto white = MakeBuiltin("spectralon");
+  EXPECT_LT(MeanAbsDifference(*white, FitBrdf(*white, problem, options).network), 1e-3);
+}
+
+TEST(FitBrdf, DrawsRandomWeightsAnewWhereAllUnitsAreDead) {
+  FitProblem problem = SmallProblem();
+  problem.hidden = {1, 1};
+  problem.activation = Activation::kRelu;
+  FitOptions options;
+  options.max_iterations = 5;
+  const auto gold = MakeBuiltin("satin-gold");
+  int restarted = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    problem.seed = seed;
+    const Fit fit = FitBrdf(*gold, problem, options);
+    if (fit.summary.restarts == 0) continue;
+    ++restarted;
+    EXPECT_GT(MeanAbsDifference(TooBright(), fit.network), 0.0);
+    EXPECT_EQ(FitBrdf(*gold, problem, options).network.weights(), fit.network.weights());
+  }
+  EXPECT_GT(restarted, 0);
+  EXPECT_LT(restarted, 10);
+}
+
+TEST(FitBrdf, AdamThatDivergesReturnsItsBestEpoch) {
+  FitProblem problem = SmallProblem();
+  problem.activation = Activation::kRelu;
+  FitOptions options;
+  options.solver = Solver::kAdam;
+  options.adam.batch = 50;
+  options.adam.learning_rate = 1e30;
+  options.max_iterations = 10;
+  const auto gold = MakeBuiltin("satin-gold");
+  const Fit fit = FitBrdf(*gold, problem, options);
+  EXPECT_EQ(fit.summary.termination, Termination::kDiverged);
+  EXPECT_THAT(fit.summary.message, HasSubstr("try a smaller learning rate"));
+  EXPECT_TRUE(std::isfinite(fit.summary.final_cost));
+  options.max_iterations = 0;
+  EXPECT_LE(fit.summary.final_cost, FitBrdf(*gold, problem, options).summary.final_cost);
+}
+
+TEST(FitBrdf, AStageThatCantStartLeavesTheNetworkOfTheOneBefore) {
+  FitProblem problem = SmallProblem();
+  problem.energy_weight = 1e308;
+  problem.loss = Loss::kL2;
+  FitOptions options;
+  options.max_iterations = 5;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm, Solver::kLbfgs}) {
+    options.solver = solver;
+    const Fit fit = FitBrdf(TooBright(), problem, options);
+    EXPECT_TRUE(fit.summary.energy_stage);
+    EXPECT_TRUE(std::isfinite(fit.summary.final_cost));
+    EXPECT_EQ(fit.summary.termination, Termination::kDiverged);
+    EXPECT_GT(fit.summary.iterations, 0);  // those of the stage before
+    EXPECT_NE(fit.summary.message, "");
+    EXPECT_LT(MeanAbsDifference(TooBright(), fit.network), 0.2);
+  }
+}
+
+TEST(FitBrdf, CountsWhatTheSolversMeet) {
+  FitProblem problem = SmallProblem();
+  problem.activation = Activation::kRelu;
+  problem.loss = Loss::kHuber;
+  FitOptions options;
+  options.max_iterations = 60;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm}) {
+    options.solver = solver;
+    const FitSummary summary = FitBrdf(*MakeBuiltin("polished-chromium"), problem, options).summary;
+    EXPECT_GT(summary.rejected_steps, 0);
+    EXPECT_LT(summary.rejected_steps + summary.failed_factorizations, summary.iterations);
+  }
+}
+
+TEST(FitBrdf, APerfectStartIsConvergedAtOnce) {
+  // A black material, and a network of zeros but for its units' weights: the cost is 0.
+  const FitProblem problem = SmallProblem();
+  const NetworkShape shape = problem.Shape();
+  std::vector<double> weights = RandomWeights(shape, 0.5, /*seed=*/3);
+  std::fill(weights.begin() + shape.offset(1), weights.end(), 0.0);
+  const NeuralBrdf black(shape, weights);
+  FitOptions options;
+  options.initial_weights = weights;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm, Solver::kLbfgs, Solver::kAdam}) {
+    options.solver = solver;
+    options.max_iterations = 12;
+    const Fit fit = FitBrdf(black, problem, options);
+    EXPECT_EQ(fit.summary.final_cost, 0.0);
+    EXPECT_EQ(fit.network.weights(), weights);
+    EXPECT_THAT(fit.summary.message, testing::Not(HasSubstr("nan")));
+  }
+}
+
 TEST(FitBrdf, BadOptionsAreNamed) {
   const auto error = [](auto change) {
     FitOptions options;

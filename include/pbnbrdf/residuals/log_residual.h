@@ -23,7 +23,10 @@ class LogResidual {
   template <typename T>
   void operator()(const T* z, T* residuals) const {
     using std::log1p;
-    for (int c = 0; c < 3; ++c) residuals[c] = target_[c] - log1p(Reflectance(z[c]) * cos_i_);
+    for (int c = 0; c < 3; ++c) {
+      // log1p(expm1(z)) is z, and computed the logarithm of 0 where z < -37.
+      residuals[c] = target_[c] - (cos_i_ == 1.0 ? z[c] : log1p(Reflectance(z[c]) * cos_i_));
+    }
   }
 
  private:

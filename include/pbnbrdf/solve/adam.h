@@ -29,7 +29,7 @@ struct AdamOptions {
 // converged means that its mean over 5 epochs differs from that over the 5 before by less than a
 // part of function_tolerance. weights: where to start, and on return and in callbacks those of the
 // epoch with the least cost; the published scripts keep the last, which is a tenth worse or more at
-// random. Throws Error if the cost isn't finite any more.
+// random. Diverged where the cost or a weight isn't finite any more.
 StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> samples,
                          const AdamOptions& adam, const StageOptions& options,
                          std::vector<double>* weights);

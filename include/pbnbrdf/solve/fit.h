@@ -67,10 +67,13 @@ struct EnergySummary {
 };
 
 struct FitSummary {
-  double final_cost = 0.0;    // fit_problem.h
-  int iterations = 0;         // of all stages
-  std::size_t samples = 0;    // that the fit had grown to
-  EnergySummary energy;       // of a fit with the energy term
+  double final_cost = 0.0;  // fit_problem.h
+  int iterations = 0;       // of all stages
+  int restarts = 0;  // random weights drawn anew, as the cost wasn't finite or the network was dead
+  int failed_factorizations = 0;  // of all stages (stage.h)
+  int rejected_steps = 0;         // likewise
+  std::size_t samples = 0;        // that the fit had grown to
+  EnergySummary energy;           // of a fit with the energy term
   // Of single precision only: rounding changes the final cost by more than a hundredth, so that
   // double precision would have gone further.
   bool precision_limited = false;
@@ -91,8 +94,11 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options);
 // The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
 // same network to the last bit, whatever the number of threads. The energy term joins in a second
 // stage, if the directional albedo of the first stage's network exceeds 1 in a stratum; Adam, as
-// published, has it and all samples from the start. Throws Error as ValidateFit does, if the
-// material has next to no data, or if the solver finds no usable step.
+// published, has it and all samples from the start. A solver that diverges ends the fit with the
+// best network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the material
+// has next to no data, and where there is no start: at the given weights, or at each of several
+// random ones, the cost or a derivative isn't finite, or the gradient is 0 and the cost isn't; or
+// the given network is constant and would stay so, the material not being constant.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf

@@ -11,13 +11,22 @@
 
 namespace pbnbrdf {
 
-enum class Termination { kConverged, kMaxIterations, kMaxSeconds, kInterrupted };
+enum class Termination {
+  kConverged,
+  kMaxIterations,
+  kMaxSeconds,
+  kInterrupted,
+  // The cost or its derivatives aren't finite any more, or no step can be computed. The weights are
+  // the best ones before; StageResult::cost is infinite if it wasn't finite even at the start.
+  kDiverged,
+};
 
-inline constexpr NameTable<Termination, 4> kTerminations = {
+inline constexpr NameTable<Termination, 5> kTerminations = {
     {{"converged", Termination::kConverged},
      {"max_iterations", Termination::kMaxIterations},
      {"max_seconds", Termination::kMaxSeconds},
-     {"interrupted", Termination::kInterrupted}}};
+     {"interrupted", Termination::kInterrupted},
+     {"diverged", Termination::kDiverged}}};
 
 // Of both Levenberg-Marquardt solvers. From random weights larger ones are refused several times over.
 inline constexpr double kFirstTrustRegionRadius = 10.0;
@@ -34,6 +43,10 @@ struct StageOptions {
 struct StageResult {
   double cost = 0.0;
   int iterations = 0;
+  // Of the iterations of Levenberg-Marquardt: those for which no step could be computed, as the
+  // damped J'J didn't factor or something wasn't finite, and those whose step was too poor to take.
+  int failed_factorizations = 0;
+  int rejected_steps = 0;
   Termination termination = Termination::kConverged;
   std::string message;  // why it stopped, with the numbers
 };

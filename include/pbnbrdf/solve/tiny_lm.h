@@ -15,8 +15,8 @@
 
 namespace pbnbrdf {
 
-// weights: where to start, and on return and in callbacks the best found. Throws Error if the
-// objective isn't finite at the start.
+// weights: where to start, and on return and in callbacks the best found. Diverged if the objective
+// isn't finite at the start; converged at once where its gradient is 0.
 StageResult MinimizeTinyLm(Objective* objective, const StageOptions& options,
                            std::vector<double>* weights);
 
