@@ -14,7 +14,8 @@ int RunTabulate(const std::string&) {
   RequireFlag("material", FLAGS_material);
   RequireFlag("out", FLAGS_out);
   CheckWritable(FLAGS_out);
-  MerlBrdf::Tabulate(*OpenBrdf(FLAGS_material)).Write(FLAGS_out);
+  const std::unique_ptr<Brdf> material = OpenBrdf(FLAGS_material);
+  AboutMaterial([&] { return MerlBrdf::Tabulate(*material); }).Write(FLAGS_out);
   return 0;
 }
 
@@ -23,7 +24,7 @@ int RunTabulate(const std::string&) {
 Command TabulateCommand() {
   Command command;
   command.name = "tabulate";
-  command.summary = "turns any source of reflectance into a MERL file";
+  command.summary = "turns any isotropic source of reflectance into a MERL file";
   command.usage = "  pbnbrdf tabulate --material=builtin:satin-gold --out=gold.binary\n";
   command.notes = kSourceNotes;
   command.flags = {{"", {"material", "out"}}};
