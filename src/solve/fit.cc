@@ -285,6 +285,10 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
 
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   ValidateFit(problem, options);
+  if (material.IsIsotropic() && !IsIsotropic(problem.encoding)) {
+    Fail("encoding: ", NameOf(kEncodings, problem.encoding),
+         " is for anisotropic materials; an isotropic one has samples at phi_h = 0 only");
+  }
   const int most_threads = tbb::this_task_arena::max_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
                                             : most_threads);

@@ -61,6 +61,35 @@ TEST(FitBrdf, FindsANetworkThatExists) {
   EXPECT_LT(MeanAbsDifference(truth, fit.network), 2e-5);
 }
 
+TEST(FitBrdf, FitsAnAnisotropicMaterialAroundTheNormal) {
+  const std::unique_ptr<Brdf> brass = MakeBuiltin("rolled-brass");
+  FitProblem problem;
+  problem.hidden = {12, 12};
+  problem.samples = 4000;
+  FitOptions options;
+  options.max_iterations = 60;
+  const auto error = [&](Encoding encoding) {
+    problem.encoding = encoding;
+    const Fit fit = FitBrdf(*brass, problem, options);
+    EXPECT_EQ(fit.network.IsIsotropic(), encoding != Encoding::kAnisotropic);
+    TemporaryFolder folder;
+    fit.network.Write(folder / "brass.safetensors");
+    const NeuralBrdf read = NeuralBrdf::Read(folder / "brass.safetensors");
+    EXPECT_EQ(MeanAbsDifference(read, fit.network), 0.0);
+    return MeanAbsDifference(*brass, read);
+  };
+  const double anisotropic = error(EncodingFor(*brass)), isotropic = error(Encoding::kMerl);
+  EXPECT_LT(anisotropic, 0.008);
+  EXPECT_GT(isotropic, 2.5 * anisotropic);
+}
+
+TEST(FitBrdf, AnAnisotropicEncodingNeedsAnAnisotropicMaterial) {
+  FitProblem problem = SmallProblem();
+  problem.encoding = Encoding::kAnisotropic;
+  EXPECT_THAT(ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, {}); }),
+              HasSubstr("encoding: anisotropic is for anisotropic materials"));
+}
+
 TEST(FitBrdf, IsTheSameToTheBitForAnyNumberOfThreads) {
   FitProblem problem = SmallProblem();
   problem.samples = 3000;

@@ -81,8 +81,10 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options);
 // The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
 // same network to the last bit, whatever the number of threads. The energy term joins in a second
 // stage, if the directional albedo of the first stage's network exceeds 1 in a stratum; Adam, as
-// published, has it and all samples from the start. Throws Error as ValidateFit does, if the
-// material has next to no data, or if the solver finds no usable step.
+// published, has it and all samples from the start. An anisotropic material takes any encoding, an
+// isotropic one gives the best isotropic fit. Throws Error as ValidateFit does, if the encoding is
+// anisotropic and the material isn't, if the material has next to no data, or if the solver finds
+// no usable step.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf
