@@ -2,12 +2,16 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "pbnbrdf/base/text.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
-DEFINE_string(encoding, "merl",
-              "the network's input: cartesian | reciprocal | multiscale | merl; all but the "
-              "first are exactly reciprocal");
+DEFINE_string(encoding, "auto",
+              "the network's input: cartesian | reciprocal | multiscale | merl | bilateral | "
+              "anisotropic; all but the first are exactly reciprocal; auto: merl for an isotropic "
+              "material, anisotropic for another one");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
 DEFINE_string(initialization, "glorot",
@@ -69,10 +73,17 @@ std::vector<int> ParseHidden(const std::string& text) {
   return sizes;
 }
 
+// Of --encoding; none for auto.
+std::optional<Encoding> ParseEncoding() {
+  NameTable<std::optional<Encoding>, kEncodings.size() + 1> names = {{{"auto", std::nullopt}}};
+  std::copy(kEncodings.begin(), kEncodings.end(), names.begin() + 1);
+  return ParseName(names, "encoding", FLAGS_encoding);
+}
+
 FitProblem ParseProblem() {
   const Terms terms = ParseTerms(FLAGS_terms);
   FitProblem problem;
-  problem.encoding = ParseName(kEncodings, "encoding", FLAGS_encoding);
+  problem.encoding = ParseEncoding().value_or(problem.encoding);
   problem.hidden = ParseHidden(FLAGS_hidden);
   problem.activation = ParseName(kActivations, "activation", FLAGS_activation);
   problem.initialization = ParseName(kInitializations, "initialization", FLAGS_initialization);
@@ -131,6 +142,11 @@ FitFlags ParseFitFlags() {
     throw UsageError(
         StrCat("--", error.what()));  // the message begins with the field, the flag's name
   }
+}
+
+void ResolveEncoding(const Brdf& material, FitProblem* problem) {
+  problem->encoding = ParseEncoding().value_or(EncodingFor(material));
+  FLAGS_encoding = NameOf(kEncodings, problem->encoding);
 }
 
 }  // namespace pbnbrdf::cli
