@@ -107,9 +107,9 @@ TEST(Encoding, AnisotropicIsContinuousAtThePole) {
   }
 }
 
-// A pair's mirror image in a vertical plane has phi_d of the other sign. In the planes of x and of y
-// it has no rounding of its own, so that all bits must agree; in others, and if phi_d changes its
-// sign in the plane of incidence, only the directions' rounding stands between the two.
+// A pair's mirror image in a vertical plane has phi_d of the other sign. In the planes of x and of
+// y it has no rounding of its own, so that all bits must agree; where phi_d alone changes its sign,
+// the rounding of the directions stands between the two.
 TEST(Encoding, BilateralIsTheSameForMirrorImages) {
   const auto mirrored = [](const DirectionPair& p, double x, double y) {
     return DirectionPair{{x * p.wi.x, y * p.wi.y, p.wi.z}, {x * p.wo.x, y * p.wo.y, p.wo.z}};

@@ -66,8 +66,8 @@ class WardBrdf final : public PointwiseBrdf {
   LobeWidths alpha_;
 };
 
-// GGX microfacets with Smith shadowing [1], elliptic as in [4], Schlick's Fresnel reflectance f0 [2],
-// over the diffuse base of [3], which receives what the facets don't reflect.
+// GGX microfacets with Smith shadowing [1], elliptic as in [4], Schlick's Fresnel reflectance f0
+// [2], over the diffuse base of [3], which receives what the facets don't reflect.
 //
 // [1] B. Walter, S. Marschner, H. Li, K. Torrance. Microfacet Models for Refraction through Rough
 //     Surfaces. EGSR 2007.

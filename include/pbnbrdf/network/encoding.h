@@ -15,8 +15,8 @@ enum class Encoding {
   kCartesian,
   // (hx, hy, hz, (dx^2 - dy^2) / s, 2 dx dy / s, dz): phi_d doubled, section 4.1 of the paper.
   kReciprocal,
-  // (sin th, sqrt(2 th / pi), log(th + 0.001) / 3, dx^2 - dy^2, 2 dx dy, dz): reciprocal too, smooth where s = 0, and with theta_h on three scales, which resolves lobes of
-  // any width.
+  // (sin th, sqrt(2 th / pi), log(th + 0.001) / 3, dx^2 - dy^2, 2 dx dy, dz): reciprocal too,
+  // smooth where s = 0, and with theta_h on three scales, which resolves lobes of any width.
   kMultiscale,
   // As kMultiscale, with 4 u (1 - u) for sin th: u in [0, 1) is where th lies between two rows of a
   // MERL table, the fraction of 90 sqrt(2 th / pi). A table interpolated linearly has a kink at
@@ -24,12 +24,13 @@ enum class Encoding {
   // in between are most of what a smooth network misses.
   kMerl,
   // As kMerl, with sin th for 2 dx dy: f is then the same at phi_d and -phi_d, for any weights, as
-  // it is of an isotropic material without chirality.
+  // it is of an isotropic material without chirality. It is there for the symmetry: over eight such
+  // materials the errors were 0.9 of kMerl's, which is less than seeds differ by.
   kBilateral,
-  // (r cos phi_h, r sin phi_h, log(th + 0.001) / 3, tx^2 - ty^2, 2 tx ty, dz), r = (2 th / pi)^(3/4),
-  // (tx, ty) = (dx, dy) turned by phi_h: reciprocal, for anisotropic materials. The frame of d spins
-  // with phi_h, that of t doesn't: all inputs are continuous at h = +z. Of the powers of th, 1/2
-  // resolves narrow lobes and 1 bends wide ones least; the one between is the better of both.
+  // (r cos phi_h, r sin phi_h, log(th + 0.001) / 3, tx^2 - ty^2, 2 tx ty, dz), for anisotropic
+  // materials: r = (2 th / pi)^(3/4), (tx, ty) = (dx, dy) turned by phi_h. Reciprocal. The frame of
+  // d spins with phi_h, that of t doesn't: all inputs are continuous at h = +z, which lowers the
+  // error of a brushed metal fivefold. Powers of th from 1/2 to 1 differ by less than seeds do.
   kAnisotropic,
 };
 
