@@ -28,7 +28,7 @@ class AutodiffEvaluation {
  public:
   AutodiffEvaluation(const FitProblem& problem, std::span<const BrdfSample> samples)
       : weights_(problem.Shape().num_weights()) {
-    AddAutodiff(problem, samples, weights_.data(), &ceres_problem_);
+    AddAutodiff(problem, samples, EqualStrata(problem), weights_.data(), &ceres_problem_);
   }
 
   void Evaluate(const double* weights, Linearization* at) {

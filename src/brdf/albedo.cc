@@ -12,6 +12,7 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kHorizon = 0.5 * kPi - 1e-9;  // nearly
 
 // P_n(x) and its derivative, by the three-term recurrence.
 struct Legendre {
@@ -53,20 +54,24 @@ bool Vertex(const IncidentAlbedo* middle, int channel, double* theta_i) {
   return true;
 }
 
-// One row of incident angles at the same phi_i, theta_i growing.
-std::vector<IncidentAlbedo> LocalMaxima(const Brdf& brdf, const AlbedoGrid& grid,
+// What may lie between the directions of a row of the same phi_i, theta_i growing, and behind its
+// end: the local maxima, and the horizon.
+std::vector<IncidentAlbedo> Additions(const Brdf& brdf, const AlbedoGrid& grid,
                                         const AlbedoQuadrature& quadrature,
                                         std::span<const IncidentAlbedo> row) {
-  std::vector<IncidentAlbedo> maxima;
+  std::vector<IncidentAlbedo> additions;
+  const auto add = [&](double theta_i) {
+    const Vec3 wi = FromSpherical(theta_i, row[0].phi_i);
+    additions.push_back({theta_i, row[0].phi_i, 0.0, DirectionalAlbedo(brdf, wi, quadrature)});
+  };
   for (std::size_t k = 1; k + 1 < row.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
       double theta_i;
-      if (!(row[k].albedo[c] > grid.refine_above) || !Vertex(&row[k], c, &theta_i)) continue;
-      const Vec3 wi = FromSpherical(theta_i, row[k].phi_i);
-      maxima.push_back({theta_i, row[k].phi_i, 0.0, DirectionalAlbedo(brdf, wi, quadrature)});
+      if (row[k].albedo[c] > grid.refine_above && Vertex(&row[k], c, &theta_i)) add(theta_i);
     }
   }
-  return maxima;
+  add(kHorizon);
+  return additions;
 }
 
 }  // namespace
@@ -156,9 +161,10 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta, int n_phi) 
 }
 
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid) {
-  const AlbedoQuadrature coarse(64, 32), fine = AlbedoQuadrature::OnMerlRows(grid.n_theta, grid.n_phi);
+  const AlbedoQuadrature coarse(64, 32);
+  const auto fine = AlbedoQuadrature::OnMerlRows(grid.n_theta, grid.n_phi);
   const int azimuths = brdf.IsIsotropic() ? 1 : grid.azimuths;
-  std::vector<IncidentAlbedo> profile(std::size_t{1} * azimuths * grid.angles);
+  std::vector<IncidentAlbedo> profile(static_cast<std::size_t>(azimuths) * grid.angles);
   tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
     const int row = static_cast<int>(n) / grid.angles;
     const auto [theta_i, solid_angle] = StratumOf(static_cast<int>(n) % grid.angles, grid.angles);
@@ -168,13 +174,12 @@ std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& gr
     if (!(Largest(albedo) < grid.refine_above)) albedo = DirectionalAlbedo(brdf, wi, fine);
     profile[n] = {theta_i, phi_i, solid_angle / azimuths, albedo};
   });
-  std::vector<std::vector<IncidentAlbedo>> maxima(azimuths);
+  std::vector<std::vector<IncidentAlbedo>> additions(azimuths);
   tbb::parallel_for(0, azimuths, [&](int row) {
-    maxima[row] = LocalMaxima(brdf, grid, fine,
-                              std::span(profile).subspan(std::size_t{1} * row * grid.angles,
-                                                         grid.angles));
+    const std::size_t first = static_cast<std::size_t>(row) * grid.angles;
+    additions[row] = Additions(brdf, grid, fine, std::span(profile).subspan(first, grid.angles));
   });
-  for (const auto& row : maxima) profile.insert(profile.end(), row.begin(), row.end());
+  for (const auto& row : additions) profile.insert(profile.end(), row.begin(), row.end());
   return profile;
 }
 

@@ -13,6 +13,7 @@ using Pointer = std::unique_ptr<Brdf>;
 constexpr std::string_view kLabsphere =
     "Labsphere Spectralon SRS-99: diffuse reflectance 0.99 over the visible range";
 constexpr std::string_view kWard = "Ward 1992, table 1 (measured; isotropic rows)";
+constexpr std::string_view kWardElliptic = "Ward 1992, table 1 (measured; anisotropic rows)";
 constexpr std::string_view kOrenNayar = "Oren and Nayar 1994: their fits to measured samples";
 constexpr std::string_view kMetals =
     "f0: Akenine-Moeller et al., Real-Time Rendering, 4th edition 2018, table 9.2; width chosen";
@@ -28,10 +29,13 @@ Rgb Grey(double value) { return {value, value, value}; }
 Pointer Ward(double rho_d, double rho_s, double alpha) {
   return std::make_unique<WardBrdf>(Grey(rho_d), Grey(rho_s), alpha);
 }
+Pointer Ward(double rho_d, double rho_s, double alpha_x, double alpha_y) {
+  return std::make_unique<WardBrdf>(Grey(rho_d), Grey(rho_s), LobeWidths(alpha_x, alpha_y));
+}
 Pointer OrenNayar(double rho, double sigma_degrees) {
   return std::make_unique<OrenNayarBrdf>(Grey(rho), sigma_degrees * kDegree);
 }
-Pointer Metal(const Rgb& f0, double alpha) { return std::make_unique<GgxBrdf>(f0, alpha); }
+Pointer Metal(const Rgb& f0, LobeWidths alpha) { return std::make_unique<GgxBrdf>(f0, alpha); }
 Pointer Plastic(const Rgb& rho_d, double alpha) {
   return std::make_unique<GgxBrdf>(kGlass, alpha, rho_d);
 }
@@ -71,6 +75,17 @@ constexpr BuiltinMaterial kMaterials[] = {
     {"silver-mirror", kMetals,
      [] {
        return Metal({0.972, 0.960, 0.915}, 0.001);
+     }},
+    // Anisotropic.
+    {"rolled-brass", kWardElliptic, [] { return Ward(0.10, 0.33, 0.050, 0.16); }},
+    {"rolled-aluminium", kWardElliptic, [] { return Ward(0.10, 0.21, 0.04, 0.09); }},
+    {"lightly-brushed-aluminium", kWardElliptic, [] { return Ward(0.15, 0.19, 0.088, 0.13); }},
+    {"varnished-plywood", kWardElliptic, [] { return Ward(0.33, 0.025, 0.04, 0.11); }},
+    {"enamel-finished-metal", kWardElliptic, [] { return Ward(0.25, 0.047, 0.080, 0.096); }},
+    {"painted-cardboard-box", kWardElliptic, [] { return Ward(0.19, 0.043, 0.076, 0.085); }},
+    {"brushed-aluminium", kMetals,
+     [] {
+       return Metal({0.913, 0.922, 0.924}, {0.08, 0.35});
      }},
 };
 

@@ -109,6 +109,11 @@ MerlBrdf MerlBrdf::Read(const std::string& path) {
 }
 
 MerlBrdf MerlBrdf::Tabulate(const Brdf& source) {
+  if (!source.IsIsotropic()) {
+    Fail(
+        "anisotropic, and a MERL table has no phi_h: fit it as it is, or, for the nearest "
+        "isotropic table, tabulate a fit with --encoding=merl");
+  }
   std::vector<double> planes(3 * kBins, -1.0);
   std::vector<DirectionPair> pairs(kPhiD);
   std::vector<Rgb> values(kPhiD);

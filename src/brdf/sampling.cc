@@ -52,6 +52,7 @@ void SampleStream::Draw(std::size_t count, std::vector<BrdfSample>* samples) {
     angles.theta_h = DrawThetaH(sampling_, random_);
     angles.theta_d = 0.5 * kPi * UniformOf(set_, random_);
     angles.phi_d = 2.0 * kPi * Uniform(random_);
+    if (!brdf_.IsIsotropic()) angles.phi_h = 2.0 * kPi * Uniform(random_);
     const DirectionPair pair = FromAngles(angles);
     if (brdf_.IsKnown(pair)) pairs.push_back(pair);
     if (pairs.size() < std::min(kBatch, missing)) continue;

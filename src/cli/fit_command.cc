@@ -121,12 +121,13 @@ int RunFit(const std::string&) {
   CheckWritable(FLAGS_out);
   if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
   if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
+  std::signal(SIGINT, OnInterrupt);
+  const std::unique_ptr<Brdf> material = OpenMaterial();
+  ResolveEncoding(*material, &flags.problem);
   if (!FLAGS_init.empty()) {
     flags.options.initial_weights = WeightsOf(FLAGS_init, flags.problem.Shape());
     ValidateFit(flags.problem, flags.options);
   }
-  std::signal(SIGINT, OnInterrupt);
-  const std::unique_ptr<Brdf> material = OpenMaterial();
 
   const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
   std::string trace = "iteration,seconds,cost,heldout_error\n";
@@ -158,6 +159,10 @@ int RunFit(const std::string&) {
               << MeasuresText(measures);
     if (fit.summary.termination == Termination::kDiverged) {
       std::cout << "diverged: " << fit.summary.message << "\n";
+    }
+    if (!material->IsIsotropic() && fit.network.IsIsotropic()) {
+      std::cout << "the material is anisotropic, the fit the best isotropic one: "
+                   "--encoding=anisotropic goes further\n";
     }
     if (fit.summary.precision_limited) {
       std::cout << "single precision limited the fit: --precision=double goes further\n";

@@ -2,12 +2,16 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "pbnbrdf/base/text.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
-DEFINE_string(encoding, "merl",
-              "the network's input: cartesian | reciprocal | multiscale | merl; all but the "
-              "first are exactly reciprocal");
+DEFINE_string(encoding, "auto",
+              "the network's input: cartesian | reciprocal | multiscale | merl | bilateral | "
+              "anisotropic; all but the first are exactly reciprocal; auto: merl for an isotropic "
+              "material, anisotropic for another one");
 DEFINE_string(hidden, "21,21", "units of each hidden layer");
 DEFINE_string(activation, "tanh", "of the hidden units: tanh | relu");
 DEFINE_string(initialization, "glorot",
@@ -16,10 +20,15 @@ DEFINE_string(terms, "log,energy",
               "terms of the cost: log (eq. 6), chromaticity (eq. 7), energy (eq. 5)");
 DEFINE_double(log_weight, 1.0, "weight of the log term");
 DEFINE_double(chromaticity_weight, 0.1, "weight of the chromaticity term");
-DEFINE_double(energy_weight, 1.0, "weight of the energy term");
-DEFINE_int32(energy_strata, 16, "incident angles of the energy term");
+DEFINE_double(energy_weight, 1.0,
+              "weight of the energy term, at most to begin with: it grows until energy is conserved");
+DEFINE_bool(certify_energy, true,
+            "end with no directional albedo above 1, lowering the whole network if need be");
+DEFINE_int32(energy_strata, 16, "theta_i of the energy term, to begin with");
+DEFINE_int32(energy_azimuths, 8, "phi_i with each, of anisotropic encodings");
 DEFINE_int32(energy_theta, 64, "its quadrature's elevations of the half vector");
-DEFINE_int32(energy_phi, 32, "its quadrature's azimuths of the half vector");
+DEFINE_int32(energy_phi, 48, "its quadrature's azimuths of the half vector");
+DEFINE_bool(energy_skip, true, "look only now and then at theta_i whose albedo is far below 1");
 DEFINE_string(loss, "soft_l1",
               "robust loss of the log and chromaticity terms: "
               "l2 | soft_l1 | huber | cauchy | absolute, the papers' own sum of all "
@@ -69,10 +78,17 @@ std::vector<int> ParseHidden(const std::string& text) {
   return sizes;
 }
 
+// Of --encoding; none for auto.
+std::optional<Encoding> ParseEncoding() {
+  NameTable<std::optional<Encoding>, kEncodings.size() + 1> names = {{{"auto", std::nullopt}}};
+  std::copy(kEncodings.begin(), kEncodings.end(), names.begin() + 1);
+  return ParseName(names, "encoding", FLAGS_encoding);
+}
+
 FitProblem ParseProblem() {
   const Terms terms = ParseTerms(FLAGS_terms);
   FitProblem problem;
-  problem.encoding = ParseName(kEncodings, "encoding", FLAGS_encoding);
+  problem.encoding = ParseEncoding().value_or(problem.encoding);
   problem.hidden = ParseHidden(FLAGS_hidden);
   problem.activation = ParseName(kActivations, "activation", FLAGS_activation);
   problem.initialization = ParseName(kInitializations, "initialization", FLAGS_initialization);
@@ -80,8 +96,10 @@ FitProblem ParseProblem() {
   problem.chromaticity_weight = terms.chromaticity ? FLAGS_chromaticity_weight : 0.0;
   problem.energy_weight = terms.energy ? FLAGS_energy_weight : 0.0;
   problem.energy_strata = FLAGS_energy_strata;
+  problem.energy_azimuths = FLAGS_energy_azimuths;
   problem.energy_theta = FLAGS_energy_theta;
   problem.energy_phi = FLAGS_energy_phi;
+  problem.energy_skip = FLAGS_energy_skip;
   problem.loss = ParseName(kLosses, "loss", FLAGS_loss);
   problem.loss_scale = FLAGS_loss_scale;
   problem.sampling = ParseName(kSamplings, "sampling", FLAGS_sampling);
@@ -105,6 +123,7 @@ FitOptions ParseOptions() {
   options.adam.batch = FLAGS_batch;
   options.adam.learning_rate = FLAGS_learning_rate;
   options.adam.energy_angles = FLAGS_energy_angles;
+  options.certify_energy = FLAGS_certify_energy;
   options.threads = FLAGS_threads;
   return options;
 }
@@ -115,7 +134,7 @@ std::vector<FlagGroup> ProblemFlags() {
   return {{"The network", {"encoding", "hidden", "activation", "initialization", "precision"}},
           {"The terms",
            {"terms", "log_weight", "chromaticity_weight", "energy_weight", "energy_strata",
-            "energy_theta", "energy_phi", "loss", "loss_scale"}},
+            "energy_azimuths", "energy_theta", "energy_phi", "energy_skip", "certify_energy", "loss", "loss_scale"}},
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
            {"solver", "jacobian", "init", "starts", "curvature_samples", "max_iterations",
@@ -131,6 +150,11 @@ FitFlags ParseFitFlags() {
     throw UsageError(
         StrCat("--", error.what()));  // the message begins with the field, the flag's name
   }
+}
+
+void ResolveEncoding(const Brdf& material, FitProblem* problem) {
+  problem->encoding = ParseEncoding().value_or(EncodingFor(material));
+  FLAGS_encoding = NameOf(kEncodings, problem->encoding);
 }
 
 }  // namespace pbnbrdf::cli

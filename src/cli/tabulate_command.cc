@@ -13,7 +13,8 @@ int RunTabulate(const std::string&) {
   CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
   CheckWritable(FLAGS_out);
-  MerlBrdf::Tabulate(*OpenMaterial()).Write(FLAGS_out);
+  const std::unique_ptr<Brdf> material = OpenMaterial();
+  AboutMaterial([&] { return MerlBrdf::Tabulate(*material); }).Write(FLAGS_out);
   return 0;
 }
 
@@ -22,7 +23,7 @@ int RunTabulate(const std::string&) {
 Command TabulateCommand() {
   Command command;
   command.name = "tabulate";
-  command.summary = "turns any source of reflectance into a MERL file";
+  command.summary = "turns any isotropic source of reflectance into a MERL file";
   command.usage = "  pbnbrdf tabulate --material=builtin:satin-gold --out=gold.binary\n";
   command.notes = kSourceNotes;
   command.flags = {MaterialFlagsAnd({"out"})};

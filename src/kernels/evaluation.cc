@@ -64,7 +64,8 @@ HWY_INLINE SumsAndDifferences AddAndSubtract(const double* pairs) {
 
 // What all encodings are made of (brdf/half_diff.h).
 struct HalfDiffVectors {
-  V sin_h, cos_h;  // of theta_h
+  V sin_h, cos_h;      // of theta_h
+  V sin_phi, cos_phi;  // of phi_h
   V dx, dy, dz;
 };
 
@@ -83,17 +84,17 @@ HWY_INLINE HalfDiffVectors ToHalfDiffVectors(const double* pairs) {
   const V length2 = hn::MulAdd(sum[2], sum[2], tangential2);
   const V per_tangential = InverseLength(tangential2), per_length = InverseLength(length2);
   const auto at_pole = hn::Eq(per_tangential, zero);
-  const V cos_phi = hn::IfThenElse(at_pole, one, hn::Mul(sum[0], per_tangential));
-  const V sin_phi = hn::Mul(sum[1], per_tangential);
   HalfDiffVectors v;
+  v.cos_phi = hn::IfThenElse(at_pole, one, hn::Mul(sum[0], per_tangential));
+  v.sin_phi = hn::Mul(sum[1], per_tangential);
   v.sin_h = hn::Mul(hn::Mul(tangential2, per_tangential), per_length);
   v.cos_h = hn::IfThenElse(hn::Eq(per_length, zero), one, hn::Mul(sum[2], per_length));
   // (wi - wo) / 2 along the tangents of growing theta_h and phi_h.
   const V ex = hn::Mul(half, difference[0]), ey = hn::Mul(half, difference[1]);
   const V ez = hn::Mul(half, difference[2]);
-  const V radial = hn::MulAdd(ex, cos_phi, hn::Mul(ey, sin_phi));
+  const V radial = hn::MulAdd(ex, v.cos_phi, hn::Mul(ey, v.sin_phi));
   v.dx = hn::MulSub(radial, v.cos_h, hn::Mul(ez, v.sin_h));
-  v.dy = hn::MulSub(ey, cos_phi, hn::Mul(ex, sin_phi));
+  v.dy = hn::MulSub(ey, v.cos_phi, hn::Mul(ex, v.sin_phi));
   v.dz = hn::Mul(half, hn::Mul(length2, per_length));
   return v;
 }
@@ -119,47 +120,78 @@ void CartesianInputs(const double* pairs, float* inputs) {
   });
 }
 
-// s^2 (cos 2 phi_d, sin 2 phi_d), s = sin theta_d.
+// The vector (x, y), squared as a complex number: of d, s^2 (cos 2 phi_d, sin 2 phi_d) with
+// s = sin theta_d.
 struct DoubledPhi {
-  explicit HWY_INLINE DoubledPhi(const HalfDiffVectors& v)
-      : x(hn::MulSub(v.dx, v.dx, hn::Mul(v.dy, v.dy))), y(hn::Mul(hn::Add(v.dx, v.dx), v.dy)) {}
+  HWY_INLINE DoubledPhi(V dx, V dy)
+      : x(hn::MulSub(dx, dx, hn::Mul(dy, dy))), y(hn::Mul(hn::Add(dx, dx), dy)) {}
   V x, y;
 };
 
 void ReciprocalInputs(const double* pairs, float* inputs) {
   EncodeAll(pairs, inputs, [](const HalfDiffVectors& v, float* to) HWY_ATTR {
-    const DoubledPhi doubled(v);
+    const DoubledPhi doubled(v.dx, v.dy);
     const V per_s = InverseLength(hn::MulAdd(v.dx, v.dx, hn::Mul(v.dy, v.dy)));
     StoreFeatures(to, v.sin_h, hn::Zero(F()), v.cos_h, hn::Mul(doubled.x, per_s),
                   hn::Mul(doubled.y, per_s), v.dz);
   });
 }
 
-// The inputs but the first, which is first(vectors, sqrt(2 theta_h / pi)).
-template <class First>
-HWY_INLINE void ScaledInputs(const double* pairs, float* inputs, First first) {
-  EncodeAll(pairs, inputs, [&](const HalfDiffVectors& v, float* to) HWY_ATTR {
+// theta_h on two scales: sqrt(2 theta_h / pi), log(theta_h + 0.001) / 3.
+struct ScaledThetaH {
+  explicit HWY_INLINE ScaledThetaH(const HalfDiffVectors& v) {
     constexpr float kTwoPerPi = 0.636619772f;
     const F d;
-    const DoubledPhi doubled(v);
     const V theta_h = AngleOf(d, v.sin_h, v.cos_h);
     const V scaled = hn::Mul(theta_h, hn::Set(d, kTwoPerPi));
-    const V root = hn::Mul(scaled, InverseLength(scaled));
-    const V log = hn::Log(d, hn::Add(theta_h, hn::Set(d, 1e-3f)));
-    StoreFeatures(to, first(v, root), root, hn::Mul(log, hn::Set(d, 1.0f / 3.0f)), doubled.x,
-                  doubled.y, v.dz);
+    root = hn::Mul(scaled, InverseLength(scaled));
+    log = hn::Mul(hn::Log(d, hn::Add(theta_h, hn::Set(d, 1e-3f))), hn::Set(d, 1.0f / 3.0f));
+  }
+  V root, log;
+};
+
+void MultiscaleInputs(const double* pairs, float* inputs) {
+  EncodeAll(pairs, inputs, [](const HalfDiffVectors& v, float* to) HWY_ATTR {
+    const DoubledPhi doubled(v.dx, v.dy);
+    const ScaledThetaH theta_h(v);
+    StoreFeatures(to, v.sin_h, theta_h.root, theta_h.log, doubled.x, doubled.y, v.dz);
   });
 }
 
-void MultiscaleInputs(const double* pairs, float* inputs) {
-  ScaledInputs(pairs, inputs, [](const HalfDiffVectors& v, V) HWY_ATTR { return v.sin_h; });
+// 4 u (1 - u), u the fraction of 90 root.
+HWY_INLINE V RowBend(V root) {
+  const F d;
+  const V row = hn::Mul(root, hn::Set(d, 90.0f)), u = hn::Sub(row, hn::Floor(row));
+  return hn::Mul(hn::Mul(hn::Set(d, 4.0f), u), hn::Sub(hn::Set(d, 1.0f), u));
 }
 
 void MerlInputs(const double* pairs, float* inputs) {
-  ScaledInputs(pairs, inputs, [](const HalfDiffVectors&, V root) HWY_ATTR {
-    const F d;
-    const V row = hn::Mul(root, hn::Set(d, 90.0f)), u = hn::Sub(row, hn::Floor(row));
-    return hn::Mul(hn::Mul(hn::Set(d, 4.0f), u), hn::Sub(hn::Set(d, 1.0f), u));
+  EncodeAll(pairs, inputs, [](const HalfDiffVectors& v, float* to) HWY_ATTR {
+    const DoubledPhi doubled(v.dx, v.dy);
+    const ScaledThetaH theta_h(v);
+    StoreFeatures(to, RowBend(theta_h.root), theta_h.root, theta_h.log, doubled.x, doubled.y, v.dz);
+  });
+}
+
+void BilateralInputs(const double* pairs, float* inputs) {
+  EncodeAll(pairs, inputs, [](const HalfDiffVectors& v, float* to) HWY_ATTR {
+    const DoubledPhi doubled(v.dx, v.dy);
+    const ScaledThetaH theta_h(v);
+    StoreFeatures(to, RowBend(theta_h.root), theta_h.root, theta_h.log, doubled.x, v.sin_h, v.dz);
+  });
+}
+
+void AnisotropicInputs(const double* pairs, float* inputs) {
+  EncodeAll(pairs, inputs, [](const HalfDiffVectors& v, float* to) HWY_ATTR {
+    // d turned by phi_h.
+    const V tx = hn::MulSub(v.dx, v.cos_phi, hn::Mul(v.dy, v.sin_phi));
+    const V ty = hn::MulAdd(v.dx, v.sin_phi, hn::Mul(v.dy, v.cos_phi));
+    const DoubledPhi doubled(tx, ty);
+    const ScaledThetaH theta_h(v);
+    // root^(3/2)
+    const V r = hn::Mul(hn::Mul(theta_h.root, theta_h.root), InverseLength(theta_h.root));
+    StoreFeatures(to, hn::Mul(r, v.cos_phi), hn::Mul(r, v.sin_phi), theta_h.log, doubled.x,
+                  doubled.y, v.dz);
   });
 }
 
@@ -200,6 +232,8 @@ HWY_EXPORT(CartesianInputs);
 HWY_EXPORT(ReciprocalInputs);
 HWY_EXPORT(MultiscaleInputs);
 HWY_EXPORT(MerlInputs);
+HWY_EXPORT(BilateralInputs);
+HWY_EXPORT(AnisotropicInputs);
 HWY_EXPORT(RgbReflectances);
 
 void EncodeCartesian(const double* pairs, float* inputs) {
@@ -216,6 +250,14 @@ void EncodeMultiscale(const double* pairs, float* inputs) {
 
 void EncodeMerl(const double* pairs, float* inputs) {
   HWY_DYNAMIC_DISPATCH(MerlInputs)(pairs, inputs);
+}
+
+void EncodeBilateral(const double* pairs, float* inputs) {
+  HWY_DYNAMIC_DISPATCH(BilateralInputs)(pairs, inputs);
+}
+
+void EncodeAnisotropic(const double* pairs, float* inputs) {
+  HWY_DYNAMIC_DISPATCH(AnisotropicInputs)(pairs, inputs);
 }
 
 void Reflectances(const float* z, float largest, double* f) {

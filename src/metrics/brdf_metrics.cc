@@ -62,21 +62,36 @@ double Percentile(std::vector<double> values) {
   return *at;
 }
 
+// The azimuths phi_h of anisotropic Brdfs.
+constexpr int kAzimuths = 8;
+
+// The phi_h over which a mean is taken: any one will do for an isotropic Brdf.
+std::vector<double> MeanAzimuths(const Brdf& brdf) {
+  if (brdf.IsIsotropic()) return {0.0};
+  std::vector<double> azimuths;
+  for (int k = 0; k < kAzimuths; ++k) azimuths.push_back(2.0 * kPi * (k + 0.5) / kAzimuths);
+  return azimuths;
+}
+
 // Mean over channels and a midpoint grid of angles of function(f(pair) - f(swapped pair)). The
 // phi_d are (k + offset) pi / n_phi.
 template <typename Function>
 double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi, double offset,
                       Function function) {
+  const std::vector<double> azimuths = MeanAzimuths(brdf);
   std::vector<double> rows(n_theta_h, 0.0);
   tbb::parallel_for(0, n_theta_h, [&](int h) {
     const double t = (h + 0.5) / n_theta_h;
     std::vector<DirectionPair> pairs, swapped;
     for (int d = 0; d < n_theta_d; ++d) {
       for (int p = 0; p < n_phi; ++p) {
-        pairs.push_back(FromAngles({.theta_h = 0.5 * kPi * t * t,
-                                    .theta_d = 0.5 * kPi * (d + 0.5) / n_theta_d,
-                                    .phi_d = kPi * (p + offset) / n_phi}));
-        swapped.push_back(Swapped(pairs.back()));
+        for (double phi_h : azimuths) {
+          pairs.push_back(FromAngles({.theta_h = 0.5 * kPi * t * t,
+                                      .theta_d = 0.5 * kPi * (d + 0.5) / n_theta_d,
+                                      .phi_d = kPi * (p + offset) / n_phi,
+                                      .phi_h = phi_h}));
+          swapped.push_back(Swapped(pairs.back()));
+        }
       }
     }
     std::vector<Rgb> there(pairs.size()), back(pairs.size());

@@ -28,6 +28,10 @@ void EncodeBatch(Encoding encoding, const DirectionPair* pairs, float* inputs) {
       return kernels::EncodeMultiscale(components, inputs);
     case Encoding::kMerl:
       return kernels::EncodeMerl(components, inputs);
+    case Encoding::kBilateral:
+      return kernels::EncodeBilateral(components, inputs);
+    case Encoding::kAnisotropic:
+      return kernels::EncodeAnisotropic(components, inputs);
   }
 }
 

@@ -90,7 +90,8 @@ void MinibatchStream::CopyBlock(std::span<const std::uint32_t> indices, float* b
 // network learn where the nodes are: half vectors at theta_h = (pi/2) t^2.
 void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
   const int n_theta = problem_.energy_theta, n_phi = problem_.energy_phi;
-  const Vec3 wi = {std::sqrt(1.0 - cos_i * cos_i), 0.0, cos_i};
+  const double phi_i = IsIsotropic(problem_.encoding) ? 0.0 : 2.0 * kPi * Uniform();
+  const Vec3 wi = FromSpherical(std::acos(cos_i), phi_i);
   const double shift_t = Uniform(), shift_phi = Uniform();
   const std::size_t first_block = to->nodes.size() / (Minibatches::kNodeRows * kBatch);
   std::size_t nodes = 0;

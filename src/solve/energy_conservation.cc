@@ -12,10 +12,14 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr AlbedoGrid kGrid = {
-    .angles = 200, .azimuths = 8, .n_theta = 3, .n_phi = 96, .refine_above = 0.995};
+// Between the rounds, and in the end.
+constexpr AlbedoGrid kRoundGrid = {
+    .angles = 100, .azimuths = 8, .n_theta = 2, .n_phi = 64, .refine_above = 0.995};
+constexpr AlbedoGrid kLastGrid = {
+    .angles = 200, .azimuths = 16, .n_theta = 3, .n_phi = 96, .refine_above = 0.995};
 constexpr double kSameDirection = 1e-3;  // radians, of directions that need no two strata
-constexpr int kStratumSpacing = 5;       // of the grid's directions that become strata
+constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
+constexpr double kLeastStep = 1e-7;      // of a correction
 constexpr int kMostCorrections = 100;
 
 Rgb LargestByChannel(const std::vector<IncidentAlbedo>& profile) {
@@ -27,7 +31,7 @@ Rgb LargestByChannel(const std::vector<IncidentAlbedo>& profile) {
 }
 
 Rgb MeasureLargest(const NetworkShape& shape, const std::vector<double>& weights) {
-  return LargestByChannel(AlbedoProfile(NeuralBrdf(shape, weights), kGrid));
+  return LargestByChannel(AlbedoProfile(NeuralBrdf(shape, weights), kLastGrid));
 }
 
 bool IsAnyAbove(const Rgb& albedo, double bound) {
@@ -43,9 +47,9 @@ EnergyConstraints::EnergyConstraints(const FitProblem& problem)
 
 double EnergyConstraints::Measure(const std::vector<double>& weights) {
   const NeuralBrdf network(shape_, weights);
-  profile_ = AlbedoProfile(network, kGrid);
+  profile_ = AlbedoProfile(network, kRoundGrid);
   // What the energy term's own quadrature has to be told.
-  const auto fine = AlbedoQuadrature::OnMerlRows(kGrid.n_theta, kGrid.n_phi);
+  const auto fine = AlbedoQuadrature::OnMerlRows(kRoundGrid.n_theta, kRoundGrid.n_phi);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
     const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
@@ -64,8 +68,8 @@ void EnergyConstraints::Exchange() {
     AddStratum(*largest);
   }
   for (std::size_t k = 0; k < profile_.size(); ++k) {
-    const bool is_maximum = profile_[k].solid_angle == 0.0;
-    if (is_maximum || k % kStratumSpacing == 0) AddStratum(profile_[k]);
+    const bool is_addition = profile_[k].solid_angle == 0.0;
+    if (is_addition || k % kStratumSpacing == 0) AddStratum(profile_[k]);
   }
 }
 
@@ -83,7 +87,7 @@ double CorrectionOf(double max_albedo) {
   return std::log((std::max(max_albedo, kMostAlbedo) + kPi) / (kMostAlbedo + kPi));
 }
 
-double LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
+Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
   const int last = shape.num_layers() - 1, in = shape.in(last);
   // As a' = exp(-s) (a + S) - S, S = integral of cos_o where f' > 0: at most pi, and less the more
   // is cut off, so that steps which take S for that of the last one don't go too far.
@@ -93,7 +97,7 @@ double LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) 
     Rgb step = {};
     for (int c = 0; c < 3; ++c) {
       if (!(largest[c] > kMostAlbedo)) continue;
-      step[c] = std::log((largest[c] + support[c]) / (kMostAlbedo + support[c])) + 1e-9;
+      step[c] = std::log((largest[c] + support[c]) / (kMostAlbedo + support[c])) + kLeastStep;
       (*weights)[shape.offset(last) + c * (in + 1) + in] -= step[c];
       sum[c] += step[c];
     }
@@ -105,7 +109,7 @@ double LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) 
       support[c] = std::clamp((kept * before[c] - largest[c]) / (1.0 - kept), 0.0, kPi);
     }
   }
-  return std::max({sum[0], sum[1], sum[2]});
+  return {std::max({sum[0], sum[1], sum[2]}), std::max({largest[0], largest[1], largest[2]})};
 }
 
 }  // namespace pbnbrdf

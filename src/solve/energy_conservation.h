@@ -18,7 +18,7 @@ namespace pbnbrdf {
 
 // The largest directional albedo that a fit with the energy term may have by its own check, so that
 // other checks, with their own quadrature errors, find at most 1 + 1e-6.
-inline constexpr double kMostAlbedo = 1.0 - 5e-6;
+inline constexpr double kMostAlbedo = 1.0 - 1e-5;
 
 class EnergyConstraints {
  public:
@@ -45,9 +45,14 @@ class EnergyConstraints {
 // About what LowerToConserve lowers log(1 + f) by if the largest directional albedo is so much.
 double CorrectionOf(double max_albedo);
 
+struct Correction {
+  double lowered;     // log(1 + f), in the channel where it was lowered most
+  double max_albedo;  // the largest directional albedo that is left
+};
+
 // Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by the
 // least s of each channel with which no directional albedo is above kMostAlbedo. A reciprocal
-// network stays so. Returns the largest s.
-double LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
+// network stays so.
+Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
 
 }  // namespace pbnbrdf

@@ -38,12 +38,15 @@ constexpr std::size_t kStartSamples = 1024;  // that tell whether weights are a 
 constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
 constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
 constexpr std::size_t kCurvatureGrowth = 4;
-constexpr std::size_t kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
+constexpr int kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
 
 // Of the stages with the energy term.
-constexpr int kMostEnergyRounds = 16, kRoundIterations = 40;
-constexpr double kSmallCorrection = 0.02;  // of the mean absolute log error
-constexpr double kWeightGrowth = 10.0, kMostOverBalance = 30.0;
+constexpr int kMostEnergyRounds = 24, kRoundIterations = 40;
+constexpr double kSmallCorrection = 0.05;  // of the mean absolute log error
+constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
+constexpr double kLeastCost = 1e-7;         // of the other terms, for the weight of this one
+constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
+constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
 
 // By more than rounding makes of a constant.
 bool Varies(const std::vector<Rgb>& values) {
@@ -136,9 +139,10 @@ class Fitter {
     EnergyConstraints constraints(problem);
     energy.first_max_albedo = energy.max_albedo = constraints.Measure(weights_);
     if (options_.solver != Solver::kAdam) RunEnergyRounds(problem, &constraints);
-    if (energy.max_albedo <= kMostAlbedo) return;
-    energy.correction = LowerToConserve(problem.Shape(), &weights_);
-    energy.max_albedo = constraints.Measure(weights_);
+    if (energy.max_albedo < kClearlyConserved || !options_.certify_energy) return;
+    const Correction correction = LowerToConserve(problem.Shape(), &weights_);
+    energy.correction = correction.lowered;
+    energy.max_albedo = correction.max_albedo;
   }
 
   // Whether neither the user nor the clock has ended the fit.
@@ -161,27 +165,32 @@ class Fitter {
   enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };
 
   // The term's weight starts where the term costs as much as the rest, and grows from round to round
-  // until what remains above 1 is small: where its square outweighs the rest by far, a fit gives up
-  // whole lobes.
+  // until what remains above 1 is small. It is kept from outweighing the rest by more than it must:
+  // otherwise a fit gives up whole lobes.
   void RunEnergyRounds(FitProblem problem, EnergyConstraints* constraints) {
     EnergySummary& energy = summary_.energy;
+    double most_over_balance = 1.0;
     while (energy.rounds < kMostEnergyRounds && MayContinue()) {
       const double error =
           MakeObjective(problem, validation_samples_)->MeanAbsLogError(weights_.data());
       if (CorrectionOf(energy.max_albedo) <= kSmallCorrection * error) break;
       constraints->Exchange();
       strata_ = constraints->strata();
-      const double balanced = BalancedEnergyWeight(problem);
-      problem.energy_weight = energy.rounds == 0
-                                  ? std::min(problem.energy_weight, balanced)
-                                  : std::min(problem.energy_weight * kWeightGrowth,
-                                             kMostOverBalance * balanced);
-      RunStages(problem, std::min(kRoundIterations, options_.max_iterations));
+      const double grown = energy.rounds > 0 ? kWeightGrowth : 1.0;
+      problem.energy_weight = std::min(problem.energy_weight * grown,
+                                       most_over_balance * BalancedEnergyWeight(problem));
+      RunStages(problem, std::min(kRoundIterations * Pace(), options_.max_iterations));
+      const double excess = energy.max_albedo - 1.0;
       energy.max_albedo = constraints->Measure(weights_);
+      const bool fell = energy.max_albedo - 1.0 < kRoundFall * excess;
+      most_over_balance = fell ? kOverBalance : kWeightGrowth * most_over_balance;
       energy.strata = strata_.size();
       ++energy.rounds;
     }
   }
+
+  // Iterations to one of Levenberg-Marquardt.
+  int Pace() const { return options_.solver == Solver::kLbfgs ? kLbfgsPace : 1; }
 
   // With which the energy term costs as much as all else; 0 where its cost isn't finite.
   double BalancedEnergyWeight(FitProblem problem) const {
@@ -190,13 +199,13 @@ class Fitter {
     problem.energy_weight = 1.0;
     const double all = MakeObjective(problem, validation_samples_, strata_)->Cost(weights_.data());
     if (!std::isfinite(all)) return 0.0;
-    return all > rest ? rest / (all - rest) : 1.0;
+    return all > rest ? std::max(rest, kLeastCost) / (all - rest) : 1.0;
   }
 
   // What it ended for; kNone: for the solver's own reasons.
   End RunStage(const FitProblem& problem) {
     End end = End::kNone;
-    const std::size_t pace = options_.solver == Solver::kLbfgs ? kLbfgsPace : 1;
+    const std::size_t pace = Pace();
     Slowdown slow(pace * kSlowIterations, kSlowFall), idle(pace * kIdleIterations, kIdleFall);
     StageOptions stage = MakeStage();
     stage.max_iterations = iterations_left_;
@@ -319,16 +328,16 @@ class Fitter {
       return MinimizeAdam(problem, samples, options_.adam, stage, &weights_);
     }
     const std::unique_ptr<Objective> objective = MakeObjective(problem, samples, strata_);
-    switch (options_.solver) {
-      case Solver::kTinyLm:
-        return MinimizeTinyLm(objective.get(), stage, &weights_);
-      case Solver::kLbfgs:
-        return MinimizeCeresLbfgs(objective.get(), stage, &weights_);
-      case Solver::kLm:
-      case Solver::kAdam:
-        break;
-    }
-    AddCondensed(objective.get(), weights_.data(), &ceres_problem);
+    const StageResult result = MinimizeObjective(objective.get(), stage);
+    summary_.energy.work += objective->energy_work();
+    return result;
+  }
+
+  StageResult MinimizeObjective(Objective* objective, const StageOptions& stage) {
+    if (options_.solver == Solver::kTinyLm) return MinimizeTinyLm(objective, stage, &weights_);
+    if (options_.solver == Solver::kLbfgs) return MinimizeCeresLbfgs(objective, stage, &weights_);
+    ceres::Problem ceres_problem;
+    AddCondensed(objective, weights_.data(), &ceres_problem);
     return MinimizeCeresLm(&ceres_problem, stage);
   }
 
@@ -414,6 +423,10 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
 
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   ValidateFit(problem, options);
+  if (material.IsIsotropic() && !IsIsotropic(problem.encoding)) {
+    Fail("encoding: ", NameOf(kEncodings, problem.encoding),
+         " is for anisotropic materials; an isotropic one has samples at phi_h = 0 only");
+  }
   const int most_threads = tbb::this_task_arena::max_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
                                             : most_threads);

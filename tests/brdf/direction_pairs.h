@@ -37,6 +37,16 @@ inline std::vector<DirectionPair> RandomPairs(std::size_t count, unsigned seed) 
   return pairs;
 }
 
+inline Vec3 Turned(const Vec3& w, double phi) {
+  const double c = std::cos(phi), s = std::sin(phi);
+  return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+}
+
+// Both directions turned about the normal.
+inline DirectionPair Turned(const DirectionPair& pair, double phi) {
+  return {Turned(pair.wi, phi), Turned(pair.wo, phi)};
+}
+
 inline std::vector<DirectionPair> HardAndRandomPairs(std::size_t count, unsigned seed) {
   std::vector<DirectionPair> pairs = HardPairs();
   const std::vector<DirectionPair> random = RandomPairs(count, seed);

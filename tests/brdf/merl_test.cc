@@ -61,6 +61,11 @@ TEST(Merl, TabulatingMarksWhatIsBelowTheHorizon) {
             346674u);
 }
 
+TEST(Merl, RefusesToTabulateAnAnisotropicMaterial) {
+  EXPECT_THAT(ErrorOf([] { MerlBrdf::Tabulate(*MakeBuiltin("rolled-brass")); }),
+              HasSubstr("a MERL table has no phi_h: fit it as it is, or"));
+}
+
 TEST(Merl, ATabulatedLambertianIsConstant) {
   const MerlBrdf table = MerlBrdf::Tabulate(LambertBrdf({0.9, 0.5, 0.1}));
   for (const DirectionPair& pair : RandomPairs(10000, /*seed=*/1)) {

@@ -10,6 +10,8 @@ namespace {
 
 const LambertBrdf kGrey({0.5, 0.5, 0.5});
 
+const WardBrdf kBrushed({0.1, 0.1, 0.1}, {0.3, 0.3, 0.3}, {0.05, 0.2});
+
 // Known nowhere, or almost.
 class UnknownBrdf final : public Brdf {
  public:
@@ -57,6 +59,35 @@ TEST(Sampling, TrainingAndHeldOutSetsAreDisjointEvenForOneSeed) {
   const auto held_out = DrawSamples(kGrey, SampleSet::kHeldOut, Sampling::kUniform, 20000, 5);
   const std::set<Key> a = ThetaDs(training), b = ThetaDs(held_out);
   for (const Key& key : a) EXPECT_EQ(b.count(key), 0u);
+}
+
+TEST(Sampling, OfAnAnisotropicBrdfTheSetsAreDisjointToo) {
+  // Both draw theta_d first from the same seed; the nearest points of their grids are apart by
+  // (pi / 2) 2^-32, far beyond the rounding of the directions.
+  const auto training = DrawSamples(kBrushed, SampleSet::kTraining, Sampling::kUniform, 20000, 5);
+  const auto held_out = DrawSamples(kBrushed, SampleSet::kHeldOut, Sampling::kUniform, 20000, 5);
+  const auto parity = [](const BrdfSample& sample) {
+    const double k = ToAngles(sample.pair).theta_d * 2.0 / kPi * 0x1p32 - 0.5;
+    EXPECT_NEAR(k, std::round(k), 0.1);
+    return static_cast<std::int64_t>(std::round(k)) % 2;
+  };
+  for (const BrdfSample& sample : training) ASSERT_EQ(parity(sample), 0);
+  for (const BrdfSample& sample : held_out) ASSERT_EQ(parity(sample), 1);
+}
+
+TEST(Sampling, PhiHIsUniformForAnisotropicBrdfsOnly) {
+  for (const auto& s : DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 1)) {
+    ASSERT_EQ(s.pair.wi.y + s.pair.wo.y, 0.0);
+    ASSERT_GT(s.pair.wi.x + s.pair.wo.x, 0.0);
+  }
+  constexpr int kBins = 12, kSamples = 60000;
+  int bins[kBins] = {};
+  for (const auto& s :
+       DrawSamples(kBrushed, SampleSet::kTraining, Sampling::kHighlight, kSamples, 1)) {
+    ++bins[static_cast<int>(ToAngles(s.pair).phi_h / (2 * kPi) * kBins)];
+  }
+  const double expected = double(kSamples) / kBins;
+  for (int count : bins) EXPECT_NEAR(count, expected, 5.0 * std::sqrt(expected));
 }
 
 TEST(Sampling, UniformIsUniformInThetaH) {

@@ -74,9 +74,10 @@ TEST_F(Cli, HelpTeaches) {
 
 TEST_F(Cli, HelpNamesEveryChoice) {
   const std::string help = Run("fit --help").out;
-  for (const char* choices : {"cartesian | reciprocal | multiscale | merl", "tanh | relu",
-                              "l2 | soft_l1 | huber | cauchy", "uniform", "highlight",
-                              "single | double", "condensed | autodiff"}) {
+  for (const char* choices :
+       {"cartesian | reciprocal | multiscale | merl | bilateral | anisotropic", "tanh | relu",
+        "l2 | soft_l1 | huber | cauchy", "uniform", "highlight", "single | double",
+        "condensed | autodiff"}) {
     EXPECT_THAT(help, HasSubstr(choices));
   }
 }
@@ -95,7 +96,7 @@ TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError(fit + " --loss=hubr", 2, "--loss=hubr is not one of l2 | soft_l1 | huber | cauchy");
   ExpectError(fit + " --terms=log,colour", 2, "--terms=colour is not one of log | chromaticity");
   ExpectError(fit + " --terms=energy", 2, "--terms: log or chromaticity must be among them");
-  ExpectError(fit + " --encoding=polar", 2, "--encoding=polar is not one of cartesian");
+  ExpectError(fit + " --encoding=polar", 2, "--encoding=polar is not one of auto | cartesian");
   ExpectError(fit + " --activation=gelu", 2, "--activation=gelu is not one of tanh | relu");
   ExpectError(fit + " --hidden=21,x", 2, "--hidden: 'x' is not a whole number");
   ExpectError(fit + " --hidden=21,-3", 2, "--hidden: a layer of -1 units");
@@ -171,6 +172,44 @@ TEST_F(Cli, FitWritesANetworkAndASummaryThatRepeatsIt) {
   const Result info = Run("info " + Path("a.safetensors"));
   EXPECT_THAT(info.out, HasSubstr("neural BRDF 6-5-3 tanh, merl encoding"));
   EXPECT_THAT(info.out, HasSubstr("seed: 7"));
+}
+
+TEST_F(Cli, TheEncodingSuitsTheMaterialUnlessItIsGiven) {
+  const std::string brass = " --material=builtin:rolled-brass", fit = "fit" + brass + kQuick;
+  const Result automatic =
+      Run(fit + "--out=" + Path("a.safetensors") + " --summary=" + Path("a.json"));
+  ASSERT_EQ(automatic.status, 0) << automatic.err;
+  EXPECT_THAT(automatic.out, HasSubstr("anisotropic encoding"));
+  EXPECT_THAT(automatic.out, Not(HasSubstr("best isotropic one")));
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).metadata().at("encoding"), "anisotropic");
+  const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  EXPECT_THAT(std::string(summary["problem"]), HasSubstr("--encoding=anisotropic\n"));
+  EXPECT_EQ(summary["hrl"], 0.0);
+
+  // Goes on from that fit, which --init must find fitting with the flag left alone.
+  ASSERT_EQ(Run(fit + "--max_iterations=0 --init=" + Path("a.safetensors") +
+                " --out=" + Path("b.safetensors"))
+                .status,
+            0);
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights(),
+            NeuralBrdf::Read(Path("b.safetensors")).weights());
+
+  const Result isotropic = Run(fit + "--encoding=merl --out=" + Path("c.safetensors"));
+  EXPECT_EQ(isotropic.status, 0) << isotropic.err;
+  EXPECT_THAT(isotropic.out, HasSubstr("the material is anisotropic, the fit the best isotropic "
+                                       "one: --encoding=anisotropic goes further\n"));
+  ExpectError("fit --material=builtin:satin-gold --encoding=anisotropic --out=" + Path("out"), 1,
+              "builtin:satin-gold: encoding: anisotropic is for anisotropic materials");
+}
+
+TEST_F(Cli, AnAnisotropicMaterialIsTabulatedByItsIsotropicFit) {
+  const std::string brass = " --material=builtin:rolled-brass";
+  ExpectError("tabulate" + brass + " --out=" + Path("out"), 1,
+              "builtin:rolled-brass: anisotropic, and a MERL table has no phi_h");
+  ASSERT_EQ(Run("fit" + brass + kQuick + "--encoding=merl --out=" + Path("a.safetensors")).status,
+            0);
+  EXPECT_EQ(
+      Run("tabulate --material=" + Path("a.safetensors") + " --out=" + Path("a.binary")).status, 0);
 }
 
 TEST_F(Cli, AFitGoesOnFromAnother) {

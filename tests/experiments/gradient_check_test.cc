@@ -30,12 +30,14 @@ class Separable final : public Objective {
   bool Linearize(const double*, CurvaturePart, Linearization*) override { return false; }
   double HessianRounding() const override { return 1e-15; }
   double MeanAbsLogError(const double*) override { return 0.0; }
+  const EnergyWork& energy_work() const override { return energy_work_; }
 
  private:
   double (*cost_)(double);
   double (*slope_)(double);
   double wrong_;
   NetworkShape shape_;
+  EnergyWork energy_work_;
 };
 
 GradientCheck Check(Objective* objective, double weight) {

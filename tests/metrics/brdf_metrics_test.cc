@@ -29,6 +29,50 @@ TEST(Reciprocity, OfASkewedBrdfIsThatOfTheIntegrals) {
   EXPECT_NEAR(r.hcl, 4.0 / kPi, 1e-3);
 }
 
+// f = 1 + sin theta_d cos phi_d cos phi_h.
+class TurningBrdf final : public Brdf {
+ public:
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override {
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      const double f = 1.0 + ToHalfDiff(pairs[n]).d.x * std::cos(ToAngles(pairs[n]).phi_h);
+      values[n] = {f, f, f};
+    }
+  }
+  bool IsIsotropic() const override { return false; }
+  std::string Description() const override { return "turning"; }
+};
+
+TEST(Reciprocity, OfAnAnisotropicBrdfIsTheMeanOverPhiH) {
+  // As above, times the mean of cos^2 phi_h = 1 / 2, and that of |cos phi_h| = 2 / pi.
+  const Reciprocity r = MeasureReciprocity(TurningBrdf());
+  EXPECT_NEAR(r.hrl, 0.5, 1e-3);
+  EXPECT_NEAR(r.hcl, 4.0 / kPi * 2.0 / kPi, 0.03);
+}
+
+// f = 1 + sin^2 phi_h: that of a Lambertian at phi_h = 0.
+class WavingBrdf final : public Brdf {
+ public:
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override {
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      const double s = std::sin(ToAngles(pairs[n]).phi_h), f = 1.0 + s * s;
+      values[n] = {f, f, f};
+    }
+  }
+  bool IsIsotropic() const override { return false; }
+  std::string Description() const override { return "waving"; }
+};
+
+TEST(HeldOutErrors, OfAnAnisotropicReferenceAreTakenOverPhiH) {
+  const HeldOutErrors errors =
+      MeasureErrors(WavingBrdf(), LambertBrdf({kPi, kPi, kPi}), 20000, /*seed=*/1);
+  EXPECT_GT(errors.mean_abs_log_error, 0.05);
+  // (sin^2 phi_h cos_i)^2 has the mean 3/8 mean cos_i^2, in [0, 3/8].
+  EXPECT_GT(errors.rmse, 0.2);
+  EXPECT_LT(errors.rmse, std::sqrt(0.375));
+}
+
 TEST(Reciprocity, OfALambertianIsZero) {
   const Reciprocity r = MeasureReciprocity(LambertBrdf({0.5, 0.5, 0.5}));
   EXPECT_EQ(r.hrl, 0.0);

@@ -23,7 +23,8 @@ TEST(NeuralBrdf, ReciprocityIsExactToTheBit) {
   for (const DirectionPair& pair : pairs) swapped.push_back(Swapped(pair));
   // Another order, so that a pair and its exchange meet in different lanes of different batches.
   std::reverse(swapped.begin(), swapped.end());
-  for (Encoding encoding : {Encoding::kReciprocal, Encoding::kMultiscale, Encoding::kMerl}) {
+  for (const auto& [name, encoding] : kEncodings) {
+    if (encoding == Encoding::kCartesian) continue;
     for (Activation activation : {Activation::kTanh, Activation::kRelu}) {
       const NeuralBrdf network = RandomNetwork(encoding, activation);
       std::vector<Rgb> there(pairs.size()), back(pairs.size());
@@ -71,6 +72,25 @@ TEST(NeuralBrdf, FilesRoundTripToTheBit) {
   EXPECT_EQ(read.metadata().at("seed"), "1");
   EXPECT_EQ(read.shape().hidden(), network.shape().hidden());
   EXPECT_EQ(OpenBrdf(folder / "n.safetensors")->Description(), network.Description());
+}
+
+TEST(NeuralBrdf, IsAsIsotropicAsItsEncodingAlsoFromAFile) {
+  TemporaryFolder folder;
+  for (const auto& [name, encoding] : kEncodings) {
+    const NeuralBrdf network = RandomNetwork(encoding);
+    network.Write(folder / "n.safetensors");
+    EXPECT_EQ(network.IsIsotropic(), name != "anisotropic");
+    EXPECT_EQ(OpenBrdf(folder / "n.safetensors")->IsIsotropic(), network.IsIsotropic());
+    // Turned about the normal, it keeps its values or it doesn't.
+    double change = 0.0;
+    for (const DirectionPair& pair : RandomPairs(100, /*seed=*/6)) {
+      const std::array<DirectionPair, 2> both = {pair, Turned(pair, 1.0)};
+      std::array<Rgb, 2> values;
+      network.EvaluateUnclipped(both, values);
+      change = std::max(change, std::abs(values[0][0] - values[1][0]) / (1.0 + values[0][0]));
+    }
+    EXPECT_EQ(change < 1e-9, network.IsIsotropic()) << name << ", " << change;
+  }
 }
 
 TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {

@@ -75,7 +75,7 @@ TEST_P(CondensedTest, CeresSeesTheAutodiffProblemsCostAndGradient) {
   ceres::Problem condensed, autodiff;
   AddCondensed(objective_.get(), weights_.data(), &condensed);
   std::vector<double> copy = weights_;
-  AddAutodiff(problem_, samples_, copy.data(), &autodiff);
+  AddAutodiff(problem_, samples_, EqualStrata(problem_), copy.data(), &autodiff);
   double cost[2];
   std::vector<double> gradient[2];
   ASSERT_TRUE(condensed.Evaluate({}, &cost[0], nullptr, &gradient[0], nullptr));

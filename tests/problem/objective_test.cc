@@ -106,7 +106,7 @@ std::vector<Case> Cases() {
 Linearization Reference(const Case& c) {
   std::vector<double> weights = c.weights;
   ceres::Problem problem;
-  AddAutodiff(c.problem, Samples(c.problem), weights.data(), &problem);
+  AddAutodiff(c.problem, Samples(c.problem), EqualStrata(c.problem), weights.data(), &problem);
   Linearization at;
   std::vector<double> residuals;
   ceres::CRSMatrix crs;
@@ -245,17 +245,16 @@ double AbsoluteLoss(const FitProblem& problem, const std::vector<double>& weight
     loss += problem.chromaticity_weight * sum_of(ChromaticityResidual(s.value, cos_i), {s.pair});
   }
   loss /= static_cast<double>(problem.samples);
-  for (int k = 0; k < problem.energy_strata && problem.energy_weight > 0.0; ++k) {
+  const std::vector<EnergyStratum> strata = EqualStrata(problem);
+  for (std::size_t k = 0; k < strata.size() && problem.energy_weight > 0.0; ++k) {
     std::vector<DirectionPair> pairs;
     std::vector<double> node_weights;
-    for (const AlbedoNode& node : AlbedoQuadrature(StratumAngle(k, problem.energy_strata),
-                                                   problem.energy_theta, problem.energy_phi)) {
+    for (const AlbedoNode& node : QuadratureOfStratum(problem, k).Nodes(strata[k].wi)) {
       pairs.push_back(node.pair);
       node_weights.push_back(node.weight);
     }
-    const double solid_angle = 2.0 * kPi / problem.energy_strata;
     // The residual carries the square root of its solid angle.
-    loss += problem.energy_weight * solid_angle / 3.0 *
+    loss += problem.energy_weight * strata[k].solid_angle / 3.0 *
             sum_of(EnergyResidual(/*solid_angle=*/1.0, node_weights), pairs);
   }
   return loss;

@@ -48,7 +48,7 @@ std::unique_ptr<ceres::CostFunction> Dynamic(const NetworkShape& shape,
 EnergyResidual MakeEnergy(const NetworkShape& shape,
                           std::vector<NetworkResidual<EnergyResidual>::Input>* inputs) {
   std::vector<double> node_weights;
-  for (const AlbedoNode& node : AlbedoQuadrature(0.5, 6, 4)) {
+  for (const AlbedoNode& node : AlbedoQuadrature(6, 4).Nodes(FromSpherical(0.5, 0.0))) {
     inputs->push_back(Encode(shape.encoding(), node.pair));
     node_weights.push_back(node.weight);
   }

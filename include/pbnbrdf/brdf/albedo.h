@@ -59,7 +59,7 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n
 
 // Incident directions of a profile, and the quadrature where accuracy matters.
 struct AlbedoGrid {
-  int angles = 512;   // theta_i: dense towards the horizon, the last within 1e-4 degree of it
+  int angles = 512;   // theta_i: dense towards the horizon
   int azimuths = 16;  // phi_i, of anisotropic Brdfs
   int n_theta = 4, n_phi = 128;  // AlbedoQuadrature::OnMerlRows
   // Where the albedo is below this in each channel, a quadrature of 64 x 32 nodes must do.
@@ -68,13 +68,13 @@ struct AlbedoGrid {
 
 struct IncidentAlbedo {
   double theta_i, phi_i;  // radians
-  double solid_angle;     // that it stands for, sr; 0: an addition, at a local maximum
+  double solid_angle;     // that it stands for, sr; 0: one of the additions
   Rgb albedo;
 };
 
-// The directional albedos at incident directions all over the hemisphere, in parallel, followed by
-// those at the local maxima over theta_i that are above grid.refine_above, which mostly lie between
-// the directions of the grid.
+// The directional albedos at incident directions all over the hemisphere, in parallel. Additions
+// follow: the local maxima over theta_i that are above grid.refine_above, which mostly lie between
+// the directions of the grid, and the horizon.
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid);
 
 }  // namespace pbnbrdf

@@ -31,7 +31,8 @@ class MerlBrdf final : public Brdf {
   // that aren't finite or no valid bin.
   static MerlBrdf Read(const std::string& path);
 
-  // `source` at each bin's corner; invalid where it isn't known or a cosine is at most 1e-4.
+  // `source` at each bin's corner; invalid where it isn't known or a cosine is at most 1e-4. Throws
+  // Error if it is anisotropic: a table has no phi_h.
   static MerlBrdf Tabulate(const Brdf& source);
 
   // Throws Error if the file can't be written.

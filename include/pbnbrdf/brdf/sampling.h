@@ -10,7 +10,8 @@
 
 namespace pbnbrdf {
 
-// How theta_h is drawn; theta_d in [0, pi/2) and phi_d in [0, 2 pi) are uniform, phi_h = 0.
+// How theta_h is drawn; theta_d in [0, pi/2) and phi_d in [0, 2 pi) are uniform. phi_h = 0 of an
+// isotropic Brdf, else uniform in [0, 2 pi).
 enum class Sampling {
   kUniform,    // theta_h uniform in [0, pi/2), as NBRDF does
   kHighlight,  // half of the samples so, half at theta_h = (pi/2) u^4, dense near the mirror

@@ -29,6 +29,7 @@ class NeuralBrdf final : public Brdf {
 
   void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                          std::span<Rgb> values) const override;
+  bool IsIsotropic() const override { return pbnbrdf::IsIsotropic(shape_.encoding()); }
   std::string Description() const override;
 
   const NetworkShape& shape() const { return shape_; }

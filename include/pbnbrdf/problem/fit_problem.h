@@ -85,7 +85,7 @@ struct FitProblem {
   int energy_strata = 16;
   int energy_azimuths = 8;
   int energy_theta = 64;
-  int energy_phi = 32;
+  int energy_phi = 48;
   bool energy_skip = true;  // to leave out strata far below 1 (energy_term.h)
 
   Precision precision = Precision::kSingle;

@@ -51,6 +51,9 @@ struct FitOptions {
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
                                      // with Adam is that of a mean (adam.h)
   AdamOptions adam;                  // of Solver::kAdam
+  // With the energy term: to end with no directional albedo above 1, by lowering the whole network
+  // if the term didn't get there. The published scripts don't.
+  bool certify_energy = true;
   int threads = 0;                   // 0: as many as the machine has
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
@@ -94,11 +97,13 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options);
 // The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
 // same network to the last bit, whatever the number of threads. The energy term joins in a second
 // stage, if the directional albedo of the first stage's network exceeds 1 in a stratum; Adam, as
-// published, has it and all samples from the start. A solver that diverges ends the fit with the
-// best network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the material
-// has next to no data, and where there is no start: at the given weights, or at each of several
-// random ones, the cost or a derivative isn't finite, or the gradient is 0 and the cost isn't; or
-// the given network is constant and would stay so, the material not being constant.
+// published, has it and all samples from the start. An anisotropic material takes any encoding, an
+// isotropic one gives the best isotropic fit. A solver that diverges ends the fit with the best
+// network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the encoding is
+// anisotropic and the material isn't, if the material has next to no data, and where there is no
+// start: at the given weights, or at each of several random ones, the cost or a derivative isn't
+// finite, or the gradient is 0 and the cost isn't; or the given network is constant and would stay
+// so, the material not being constant.
 Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
 }  // namespace pbnbrdf
