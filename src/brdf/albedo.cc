@@ -54,20 +54,64 @@ bool Vertex(const IncidentAlbedo* middle, int channel, double* theta_i) {
   return true;
 }
 
+double LargestDifference(const Rgb& a, const Rgb& b) {
+  return Largest({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+}
+
+// As AlbedoGrid says.
+class RefinedAlbedo {
+ public:
+  RefinedAlbedo(const Brdf& brdf, const AlbedoGrid& grid) : brdf_(brdf), grid_(grid) {
+    int n_theta = grid.n_theta, n_phi = grid.n_phi;
+    for (int level = 0; level < kLevels; ++level) {
+      levels_.push_back(AlbedoQuadrature::OnMerlRows(n_theta, n_phi));
+      n_theta += (n_theta + 1) / 2;
+      n_phi += n_phi / 2;
+    }
+  }
+
+  Rgb At(double theta_i, double phi_i) const {
+    const Vec3 wi = FromSpherical(theta_i, phi_i);
+    Rgb albedo = DirectionalAlbedo(brdf_, wi, coarse_);
+    double error = kCoarseError * Largest(albedo);
+    for (const AlbedoQuadrature& level : levels_) {
+      if (error <= grid_.tolerance || Largest(albedo) + kMargin * error < grid_.refine_above) break;
+      const Rgb finer = DirectionalAlbedo(brdf_, wi, level);
+      error = LargestDifference(finer, albedo);
+      albedo = finer;
+    }
+    return albedo;
+  }
+
+  // Whether an albedo may be above grid.refine_above, as far as the coarse quadrature tells.
+  bool IsNear(double albedo) const {
+    return albedo * (1.0 + kMargin * kCoarseError) > grid_.refine_above;
+  }
+
+ private:
+  static constexpr int kLevels = 4;
+  static constexpr double kCoarseError = 2e-3;  // relative
+  static constexpr double kMargin = 10.0;
+
+  const Brdf& brdf_;
+  const AlbedoGrid& grid_;
+  AlbedoQuadrature coarse_ = AlbedoQuadrature(64, 32);
+  std::vector<AlbedoQuadrature> levels_;
+};
+
 // What may lie between the directions of a row of the same phi_i, theta_i growing, and behind its
 // end: the local maxima, and the horizon.
-std::vector<IncidentAlbedo> Additions(const Brdf& brdf, const AlbedoGrid& grid,
-                                        const AlbedoQuadrature& quadrature,
-                                        std::span<const IncidentAlbedo> row) {
+std::vector<IncidentAlbedo> Additions(const RefinedAlbedo& refined,
+                                      std::span<const IncidentAlbedo> row) {
+  const double phi_i = row[0].phi_i;
   std::vector<IncidentAlbedo> additions;
   const auto add = [&](double theta_i) {
-    const Vec3 wi = FromSpherical(theta_i, row[0].phi_i);
-    additions.push_back({theta_i, row[0].phi_i, 0.0, DirectionalAlbedo(brdf, wi, quadrature)});
+    additions.push_back({theta_i, phi_i, 0.0, refined.At(theta_i, phi_i)});
   };
   for (std::size_t k = 1; k + 1 < row.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
       double theta_i;
-      if (row[k].albedo[c] > grid.refine_above && Vertex(&row[k], c, &theta_i)) add(theta_i);
+      if (refined.IsNear(row[k].albedo[c]) && Vertex(&row[k], c, &theta_i)) add(theta_i);
     }
   }
   add(kHorizon);
@@ -161,23 +205,19 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta, int n_phi) 
 }
 
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid) {
-  const AlbedoQuadrature coarse(64, 32);
-  const auto fine = AlbedoQuadrature::OnMerlRows(grid.n_theta, grid.n_phi);
+  const RefinedAlbedo refined(brdf, grid);
   const int azimuths = brdf.IsIsotropic() ? 1 : grid.azimuths;
   std::vector<IncidentAlbedo> profile(static_cast<std::size_t>(azimuths) * grid.angles);
   tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
     const int row = static_cast<int>(n) / grid.angles;
     const auto [theta_i, solid_angle] = StratumOf(static_cast<int>(n) % grid.angles, grid.angles);
     const double phi_i = 2.0 * kPi * row / azimuths;
-    const Vec3 wi = FromSpherical(theta_i, phi_i);
-    Rgb albedo = DirectionalAlbedo(brdf, wi, coarse);
-    if (!(Largest(albedo) < grid.refine_above)) albedo = DirectionalAlbedo(brdf, wi, fine);
-    profile[n] = {theta_i, phi_i, solid_angle / azimuths, albedo};
+    profile[n] = {theta_i, phi_i, solid_angle / azimuths, refined.At(theta_i, phi_i)};
   });
   std::vector<std::vector<IncidentAlbedo>> additions(azimuths);
   tbb::parallel_for(0, azimuths, [&](int row) {
     const std::size_t first = static_cast<std::size_t>(row) * grid.angles;
-    additions[row] = Additions(brdf, grid, fine, std::span(profile).subspan(first, grid.angles));
+    additions[row] = Additions(refined, std::span(profile).subspan(first, grid.angles));
   });
   for (const auto& row : additions) profile.insert(profile.end(), row.begin(), row.end());
   return profile;

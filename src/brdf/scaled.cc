@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLastAngle = 85.0 * std::numbers::pi / 180.0;
 constexpr AlbedoGrid kGrid = {
-    .angles = 64, .azimuths = 8, .n_theta = 2, .n_phi = 64, .refine_above = 0.0};
+    .angles = 64, .azimuths = 8, .refine_above = 0.0, .n_theta = 2, .n_phi = 64, .tolerance = 1e-4};
 
 }  // namespace
 

@@ -13,11 +13,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 // Between the rounds, and in the end.
-constexpr AlbedoGrid kRoundGrid = {
-    .angles = 100, .azimuths = 8, .n_theta = 2, .n_phi = 64, .refine_above = 0.995};
-constexpr AlbedoGrid kLastGrid = {
-    .angles = 200, .azimuths = 16, .n_theta = 3, .n_phi = 96, .refine_above = 0.995};
-constexpr double kSameDirection = 1e-3;  // radians, of directions that need no two strata
+constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .n_phi = 64, .tolerance = 1e-4};
+constexpr AlbedoGrid kLastGrid = {.angles = 200, .n_phi = 64};
+constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 constexpr double kLeastStep = 1e-7;      // of a correction
 constexpr int kMostCorrections = 100;
@@ -49,7 +47,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
   const NeuralBrdf network(shape_, weights);
   profile_ = AlbedoProfile(network, kRoundGrid);
   // What the energy term's own quadrature has to be told.
-  const auto fine = AlbedoQuadrature::OnMerlRows(kRoundGrid.n_theta, kRoundGrid.n_phi);
+  const auto fine = AlbedoQuadrature::OnMerlRows(3, 96);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
     const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
@@ -78,7 +76,7 @@ void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
   if (!IsAnyAbove(at.albedo, kMostAlbedo)) return;
   const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
   for (const EnergyStratum& stratum : strata_) {
-    if (Length(stratum.wi - wi) < kSameDirection) return;
+    if (Length(stratum.wi - wi) <= kSameDirection * wi.z) return;
   }
   strata_.push_back({wi, solid_angle_, {kMostAlbedo, kMostAlbedo, kMostAlbedo}});
 }

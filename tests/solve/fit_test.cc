@@ -241,24 +241,29 @@ TEST(FitBrdf, AdamsEnergyTermPullsTheAlbedoDown) {
   EXPECT_EQ(one.network.weights(), FitBrdf(bright, problem, options).network.weights());
 }
 
+std::unique_ptr<Brdf> MetalOfAlbedo(double albedo) {
+  return ScaleToAlbedo(std::make_unique<GgxBrdf>(Rgb{0.9, 0.8, 0.7}, 0.3), albedo);
+}
+
 TEST(FitBrdf, ConservesEnergyWhereTheMaterialDoesNot) {
-  const NeuralBrdf too_bright = TooBright();
+  const auto too_bright = MetalOfAlbedo(1.2);
   FitProblem problem = SmallProblem();
-  const Fit without = FitBrdf(too_bright, problem, {});
+  const double albedo = AlbedoOf(*too_bright);
+  const Fit without = FitBrdf(*too_bright, problem, {});
   EXPECT_EQ(without.summary.energy.rounds, 0);
-  EXPECT_NEAR(AlbedoOf(without.network), 1.2, 0.01);
+  EXPECT_NEAR(AlbedoOf(without.network), albedo, 0.02);
   FitOptions options;
   options.max_iterations = 50;
   for (auto [solver, weight] : {std::pair{Solver::kTinyLm, 1e-9}, {Solver::kTinyLm, 1e300},
                                 {Solver::kLm, 1.0}, {Solver::kLbfgs, 1.0}}) {
     problem.energy_weight = weight;
     options.solver = solver;
-    const Fit fit = FitBrdf(too_bright, problem, options);
+    const Fit fit = FitBrdf(*too_bright, problem, options);
     const EnergySummary& energy = fit.summary.energy;
     EXPECT_TRUE(MeasureEnergy(fit.network).Conserved())
-        << MeasureEnergy(fit.network).max_directional_albedo - 1.0;
-    EXPECT_NEAR(AlbedoOf(fit.network), 1.0, 0.02);
-    EXPECT_NEAR(energy.first_max_albedo, 1.2, 0.05);
+        << NameOf(kSolvers, solver) << " " << weight << ": " << MeasureEnergy(fit.network).max_directional_albedo - 1.0 << " at " << MeasureEnergy(fit.network).theta_i << ", " << energy.max_albedo;
+    EXPECT_NEAR(AlbedoOf(fit.network), std::min(albedo, 1.0), 0.05);
+    EXPECT_GT(energy.first_max_albedo, 1.1);
     EXPECT_GT(energy.rounds, 0);
     EXPECT_LT(energy.correction, 0.01);
     EXPECT_GT(energy.work.jacobians, 0);
@@ -283,18 +288,13 @@ TEST(FitBrdf, WithoutRoundsTheCorrectionAloneConservesEnergy) {
   EXPECT_EQ(MeasureReciprocity(fit.network).hrl, 0.0);
 }
 
-// A metal as bright as one can be.
-std::unique_ptr<Brdf> BrightMetal() {
-  return ScaleToAlbedo(std::make_unique<GgxBrdf>(Rgb{0.9, 0.8, 0.7}, 0.3), 0.999);
-}
-
 TEST(FitBrdf, SkippingStrataChangesNothing) {
   FitProblem problem = SmallProblem();
   problem.energy_weight = 1.0;
   problem.energy_skip = false;
-  const Fit all = FitBrdf(*BrightMetal(), problem, {});
+  const Fit all = FitBrdf(*MetalOfAlbedo(0.999), problem, {});
   problem.energy_skip = true;
-  const Fit skipped = FitBrdf(*BrightMetal(), problem, {});
+  const Fit skipped = FitBrdf(*MetalOfAlbedo(0.999), problem, {});
   EXPECT_EQ(all.network.weights(), skipped.network.weights());
   EXPECT_GT(all.summary.energy.rounds, 0);
   EXPECT_EQ(all.summary.energy.work.albedos_skipped, 0);

@@ -57,13 +57,16 @@ class AlbedoQuadrature {
 Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, const AlbedoQuadrature& quadrature);
 Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n_phi = 64);
 
-// Incident directions of a profile, and the quadrature where accuracy matters.
+// Incident directions of a profile, and how well their albedos are known. Each is integrated with 64
+// x 32 nodes and then, as often as four times, by AlbedoQuadrature::OnMerlRows with more and more,
+// until two agree within the tolerance or the albedo is below `refine_above` by a wide margin, ten
+// times their difference.
 struct AlbedoGrid {
   int angles = 512;   // theta_i: dense towards the horizon
   int azimuths = 16;  // phi_i, of anisotropic Brdfs
-  int n_theta = 4, n_phi = 128;  // AlbedoQuadrature::OnMerlRows
-  // Where the albedo is below this in each channel, a quadrature of 64 x 32 nodes must do.
-  double refine_above = 0.99;
+  double refine_above = 1.0;
+  int n_theta = 2, n_phi = 80;  // to begin with; then half as many more each way
+  double tolerance = 1e-6;
 };
 
 struct IncidentAlbedo {
@@ -73,8 +76,8 @@ struct IncidentAlbedo {
 };
 
 // The directional albedos at incident directions all over the hemisphere, in parallel. Additions
-// follow: the local maxima over theta_i that are above grid.refine_above, which mostly lie between
-// the directions of the grid, and the horizon.
+// follow: the local maxima over theta_i that may be above grid.refine_above, which mostly lie
+// between the directions of the grid, and the horizon.
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid);
 
 }  // namespace pbnbrdf
