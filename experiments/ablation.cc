@@ -17,14 +17,14 @@ DEFINE_string(materials, "",
               "in place of the default ones, separated by commas: sources, CLASS= in front of them "
               "if wanted; sgd:NAME is a material of --sgd");
 DEFINE_string(sgd, "", "CSV of SGD parameters; '': the default materials are the built-in ones");
-DEFINE_string(tables, "1,2,3", "those of the paper's to make");
+DEFINE_string(tables, "1,2,3,4", "those to make: 1 to 3 are the paper's, 4 has all terms together");
 DEFINE_string(base, "default",
               "what tables 2 and 3 add their terms to: default: the fit's default set-up, merl "
               "encoding and tanh units | reciprocal: problems/reciprocal.flags");
 DEFINE_string(chromaticity_weights, "0.1,1", "of table 3, beside none");
 DEFINE_double(
     scale_to_albedo, 0.99,
-    "of table 2: the largest directional albedo that materials are scaled to, but for the "
+    "of tables 2 and 4: the largest directional albedo that materials are scaled to, but for the "
     "built-in ones");
 DEFINE_string(seeds, "1", "seeds of the fits");
 DEFINE_int32(max_iterations, pbnbrdf::FitOptions{}.max_iterations, "of each fit");
@@ -45,7 +45,8 @@ constexpr char kUsage[] =
 
 The arguments are further materials. Table 1 compares encodings, table 2 fits of materials that
 reflect next to all light with and without the energy term, table 3 weights of the chromaticity
-term. Each fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
+term, table 4 problems/pbnbrdf.flags with and without the energy term on materials as they are and
+scaled. Each fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
 )";
 
 constexpr const char* kBuiltins[] = {
@@ -55,7 +56,8 @@ constexpr const char* kBuiltins[] = {
     "glossy=builtin:plastic-laminate",  "glossy=builtin:blue-plastic",
     "glossy=builtin:red-satin-plastic", "metal=builtin:rough-iron",
     "metal=builtin:satin-gold",         "metal=builtin:brushed-copper",
-    "metal=builtin:polished-chromium",  "metal=builtin:silver-mirror"};
+    "metal=builtin:polished-chromium",  "metal=builtin:silver-mirror",
+    "metal=builtin:brushed-aluminium",  "metal=builtin:rolled-brass"};
 
 // Of each class some dark, light and coloured ones.
 constexpr const char* kSgdMaterials[] = {"diffuse=sgd:white-diffuse-bball",
@@ -79,9 +81,14 @@ constexpr const char* kSgdMaterials[] = {"diffuse=sgd:white-diffuse-bball",
                                          "paint=sgd:color-changing-paint2",
                                          "paint=sgd:dark-red-paint",
                                          "paint=sgd:light-red-paint",
+                                         "paint=sgd:silver-metallic-paint2",
+                                         "paint=sgd:violet-acrylic",
                                          "metal=sgd:alum-bronze",
+                                         "metal=sgd:alumina-oxide",
                                          "metal=sgd:brass",
                                          "metal=sgd:chrome-steel",
+                                         "metal=sgd:ss440",
+                                         "metal=sgd:two-layer-silver",
                                          "metal=sgd:tungsten-carbide"};
 
 // A built-in material below this isn't one of low dissipation; others are scaled.
@@ -116,12 +123,23 @@ FitProblem BaseProblem(Base base) {
   return problem;
 }
 
+// problems/pbnbrdf.flags; the energy term last.
+std::vector<SetUp> AllTermsSetUps() {
+  std::vector<SetUp> set_ups(2);
+  for (SetUp& set_up : set_ups) set_up.problem.chromaticity_weight = 0.1;
+  set_ups[0].name = "log + chromaticity";
+  set_ups[0].problem.energy_weight = 0.0;
+  set_ups[1].name = "log + chromaticity + energy";
+  return set_ups;
+}
+
 std::vector<SetUp> SetUps(std::size_t table, Base base) {
   if (table == 1) {
     return {{"nbrdf", NbrdfProblem(Encoding::kCartesian)},
             {"reciprocal encoding", NbrdfProblem(Encoding::kReciprocal)},
             {"merl encoding", NbrdfProblem(Encoding::kMerl)}};
   }
+  if (table == 4) return AllTermsSetUps();
   std::vector<SetUp> set_ups = {{"log", BaseProblem(base)}};
   if (table == 2) {
     set_ups.push_back({"log + energy", BaseProblem(base)});
@@ -178,7 +196,7 @@ Plan MakePlan(const std::vector<std::string>& arguments) {
   plan.options.max_seconds = FLAGS_max_seconds;
   plan.options.threads = FLAGS_threads;
   for (std::size_t table : plan.tables) {
-    if (table > 3) Fail("tables: ", table, "; must be 1 to 3");
+    if (table > 4) Fail("tables: ", table, "; must be 1 to 4");
     for (SetUp& set_up : SetUps(table, plan.base)) {
       set_up.problem.samples = FLAGS_samples;
       ValidateFit(set_up.problem, plan.options);
@@ -192,13 +210,26 @@ Plan MakePlan(const std::vector<std::string>& arguments) {
   return plan;
 }
 
-// What table 2 fits: null if the material isn't one of low dissipation.
-std::unique_ptr<Brdf> OfLowDissipation(const MaterialSource& material) {
+// What a table fits of a material: under its name, and maybe scaled.
+struct Variant {
+  std::string name;
+  std::unique_ptr<Brdf> brdf;
+};
+
+std::vector<Variant> Variants(std::size_t table, const MaterialSource& material) {
+  std::vector<Variant> variants;
+  const auto add = [&](const std::string& name, std::unique_ptr<Brdf> brdf) {
+    variants.push_back({name, std::move(brdf)});
+  };
+  const bool is_builtin = material.source.starts_with("builtin:");
   std::unique_ptr<Brdf> brdf = OpenBrdf(material.source);
-  if (!material.source.starts_with("builtin:")) {
-    return ScaleToAlbedo(std::move(brdf), FLAGS_scale_to_albedo);
-  }
-  return LargestAlbedo(*brdf) >= kLowDissipation ? std::move(brdf) : nullptr;
+  if (table == 1 && !brdf->IsIsotropic()) return {};  // its encodings are
+  const bool as_it_is = table != 2 || (is_builtin && LargestAlbedo(*brdf) >= kLowDissipation);
+  if (as_it_is) add(material.name, std::move(brdf));
+  if (is_builtin || (table != 2 && table != 4)) return variants;
+  add(table == 4 ? StrCat(material.name, " scaled") : material.name,
+      ScaleToAlbedo(OpenBrdf(material.source), FLAGS_scale_to_albedo));
+  return variants;
 }
 
 class Ablation {
@@ -210,8 +241,12 @@ class Ablation {
 
   void RunMaterial(const MaterialSource& material) {
     for (std::size_t table : plan_.tables) {
-      if (const std::unique_ptr<Brdf> brdf = Open(table, material)) {
-        RunTable(table, material, *brdf);
+      try {
+        for (const Variant& variant : Variants(table, material)) {
+          RunTable(table, variant, material.material_class);
+        }
+      } catch (const Error& error) {
+        NoteFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
       }
     }
   }
@@ -219,31 +254,21 @@ class Ablation {
   void Report() const { WriteReport("ablation", Preface() + AblationMarkdown(records_)); }
 
  private:
-  // Null if the table does without the material.
-  std::unique_ptr<Brdf> Open(std::size_t table, const MaterialSource& material) {
-    try {
-      return table == 2 ? OfLowDissipation(material) : OpenBrdf(material.source);
-    } catch (const Error& error) {
-      NoteFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
-      return nullptr;
-    }
-  }
-
-  void RunTable(std::size_t table, const MaterialSource& material, const Brdf& brdf) {
+  void RunTable(std::size_t table, const Variant& variant, const std::string& material_class) {
     AblationRecord record;
     record.table = static_cast<int>(table);
-    record.material = material.name;
-    record.material_class = material.material_class;
-    if (table == 2) {
+    record.material = variant.name;
+    record.material_class = material_class;
+    if (table == 2 || table == 4) {
       record.set_up = kMaterialItself;
-      record.energy = MeasureEnergy(brdf);
+      record.energy = MeasureEnergy(*variant.brdf);
       Keep(record);
     }
     for (const SetUp& set_up : SetUps(table, plan_.base)) {
       for (std::size_t seed : plan_.seeds) {
         record.set_up = set_up.name;
         record.seed = seed;
-        RunFit(brdf, set_up.problem, record);
+        RunFit(*variant.brdf, set_up.problem, record);
       }
     }
   }
@@ -254,6 +279,7 @@ class Ablation {
                                     record.set_up, ", seed ", record.seed, ": ");
     problem.samples = FLAGS_samples;
     problem.seed = record.seed;
+    if (!material.IsIsotropic()) problem.encoding = EncodingFor(material);
     try {
       const Fit fit = FitBrdf(material, problem, plan_.options);
       record.iterations = fit.summary.iterations;
@@ -296,7 +322,7 @@ class Ablation {
         ". Medians are over materials, of each the median of its seeds; worst: of all fits. For "
         "energy, materials that aren't built in are scaled to a largest directional albedo of ",
         FLAGS_scale_to_albedo, ", and built-in ones as they are if theirs is at least ",
-        kLowDissipation, ". Failed fits: ", failures_.size(), ".\n\n");
+        kLowDissipation, "; for all terms, they come both as they are and scaled. Failed fits: ", failures_.size(), ".\n\n");
     for (const std::string& failure : failures_) text += "- " + failure + "\n";
     return text + (failures_.empty() ? "" : "\n");
   }

@@ -1,5 +1,5 @@
 // ablation_tables.h: fits with and without each of the paper's terms, as tables in the order of its
-// own: 1 reciprocity, 2 energy, 3 chromaticity.
+// own: 1 reciprocity, 2 energy, 3 chromaticity; and 4, all terms together.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace pbnbrdf {
 
-// One fit; or, in table 2, what the fits are to reproduce, if set_up is kMaterialItself.
+// One fit; or, in tables 2 and 4, what the fits are to reproduce, if set_up is kMaterialItself.
 struct AblationRecord {
-  int table = 1;       // 1, 2, 3
+  int table = 1;       // 1 to 4
   std::string set_up;  // a row of the table
   std::string material, material_class;
   std::size_t seed = 0;
@@ -24,9 +24,6 @@ struct AblationRecord {
 };
 
 inline constexpr char kMaterialItself[] = "the material itself";
-
-// A fit whose largest directional albedo exceeds this makes energy; up to it, it may be rounding.
-inline constexpr double kMostAlbedo = 1.0 + 1e-6;
 
 // The columns of a CSV and a record's row, every measure in full.
 std::vector<std::string> AblationCsvHeader();

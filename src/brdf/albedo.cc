@@ -29,15 +29,15 @@ Legendre EvaluateLegendre(int n, double x) {
   return {value, n * (x * value - before) / (x * x - 1.0)};
 }
 
-// theta_i of the k-th of n strata, and its share of the solid angle of the hemisphere, 2 pi.
+// theta_i of a stratum, and its solid angle.
 struct IncidentStratum {
   double theta_i, solid_angle;
 };
 
-// theta_i = (pi/2) (1 - s^2), s from 1 to 0.
-IncidentStratum StratumOf(int k, int n) {
-  const double s = 1.0 - (k + 0.5) / n, theta_i = 0.5 * kPi * (1.0 - s * s);
-  return {theta_i, 2.0 * kPi * std::sin(theta_i) * kPi * s / n};
+// The k-th of the grid: theta_i = last_angle (1 - s^2), s from 1 to 0.
+IncidentStratum StratumOf(const AlbedoGrid& grid, int k) {
+  const double s = 1.0 - (k + 0.5) / grid.angles, theta_i = grid.last_angle * (1.0 - s * s);
+  return {theta_i, 2.0 * kPi * std::sin(theta_i) * 2.0 * grid.last_angle * s / grid.angles};
 }
 
 double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
@@ -75,7 +75,9 @@ class RefinedAlbedo {
     Rgb albedo = DirectionalAlbedo(brdf_, wi, coarse_);
     double error = kCoarseError * Largest(albedo);
     for (const AlbedoQuadrature& level : levels_) {
-      if (error <= grid_.tolerance || Largest(albedo) + kMargin * error < grid_.refine_above) break;
+      const double largest = Largest(albedo);
+      const double tolerance = std::max(grid_.tolerance, kExcessError * (largest - 1.0));
+      if (error <= tolerance || largest + kMargin * error < grid_.refine_above) break;
       const Rgb finer = DirectionalAlbedo(brdf_, wi, level);
       error = LargestDifference(finer, albedo);
       albedo = finer;
@@ -91,6 +93,7 @@ class RefinedAlbedo {
  private:
   static constexpr int kLevels = 4;
   static constexpr double kCoarseError = 2e-3;  // relative
+  static constexpr double kExcessError = 0.01;  // of what the albedo is above 1
   static constexpr double kMargin = 10.0;
 
   const Brdf& brdf_;
@@ -100,8 +103,8 @@ class RefinedAlbedo {
 };
 
 // What may lie between the directions of a row of the same phi_i, theta_i growing, and behind its
-// end: the local maxima, and the horizon.
-std::vector<IncidentAlbedo> Additions(const RefinedAlbedo& refined,
+// end: the local maxima, and the last angle.
+std::vector<IncidentAlbedo> Additions(const RefinedAlbedo& refined, double last_angle,
                                       std::span<const IncidentAlbedo> row) {
   const double phi_i = row[0].phi_i;
   std::vector<IncidentAlbedo> additions;
@@ -114,7 +117,7 @@ std::vector<IncidentAlbedo> Additions(const RefinedAlbedo& refined,
       if (refined.IsNear(row[k].albedo[c]) && Vertex(&row[k], c, &theta_i)) add(theta_i);
     }
   }
-  add(kHorizon);
+  add(std::min(last_angle, kHorizon));
   return additions;
 }
 
@@ -169,15 +172,17 @@ std::vector<AlbedoNode> AlbedoQuadrature::Nodes(const Vec3& wi) const {
   for (std::size_t p = 0; p < phi_.size(); ++p) {
     // cos_o = 2 (wi.h) h.z - wi.z = |.| cos(2 theta_h - psi) reaches 0 at theta_max.
     const double psi = std::atan2(sin_i * std::cos(phi_[p]), wi.z);
+    const Vec3 tilt = FromSpherical(0.5 * kPi, phi_i + phi_[p]);
     for (const auto& [first, last, power] : Cells(0.25 * kPi + 0.5 * psi)) {
       for (std::size_t t = 0; t < x_.nodes.size(); ++t) {
-        const double x = x_.nodes[t], below = std::pow(x, power - 1);
+        const double x = x_.nodes[t], below = power == 1 ? 1.0 : x * x;
         const double theta_h = first + (last - first) * below * x;
-        const Vec3 h = FromSpherical(theta_h, phi_i + phi_[p]);
+        const double sin_h = std::sin(theta_h);
+        const Vec3 h = {sin_h * tilt.x, sin_h * tilt.y, std::cos(theta_h)};
         const double cos_d = Dot(wi, h);
         const Vec3 wo = 2.0 * cos_d * h - wi;
         if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
-        const double solid_angle_h = std::sin(theta_h) * (last - first) * power * below *
+        const double solid_angle_h = sin_h * (last - first) * power * below *
                                      x_.weights[t] * phi_weights_[p];
         nodes.push_back({{wi, wo}, wo.z * 4.0 * cos_d * solid_angle_h});
       }
@@ -210,14 +215,14 @@ std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& gr
   std::vector<IncidentAlbedo> profile(static_cast<std::size_t>(azimuths) * grid.angles);
   tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
     const int row = static_cast<int>(n) / grid.angles;
-    const auto [theta_i, solid_angle] = StratumOf(static_cast<int>(n) % grid.angles, grid.angles);
+    const auto [theta_i, solid_angle] = StratumOf(grid, static_cast<int>(n) % grid.angles);
     const double phi_i = 2.0 * kPi * row / azimuths;
     profile[n] = {theta_i, phi_i, solid_angle / azimuths, refined.At(theta_i, phi_i)};
   });
   std::vector<std::vector<IncidentAlbedo>> additions(azimuths);
   tbb::parallel_for(0, azimuths, [&](int row) {
     const std::size_t first = static_cast<std::size_t>(row) * grid.angles;
-    additions[row] = Additions(refined, std::span(profile).subspan(first, grid.angles));
+    additions[row] = Additions(refined, grid.last_angle, std::span(profile).subspan(first, grid.angles));
   });
   for (const auto& row : additions) profile.insert(profile.end(), row.begin(), row.end());
   return profile;

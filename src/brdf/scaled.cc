@@ -10,9 +10,12 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kLastAngle = 85.0 * std::numbers::pi / 180.0;
-constexpr AlbedoGrid kGrid = {
-    .angles = 64, .azimuths = 8, .refine_above = 0.0, .n_theta = 2, .n_phi = 64, .tolerance = 1e-4};
+constexpr AlbedoGrid kGrid = {.angles = 64,
+                             .last_angle = 85.0 * std::numbers::pi / 180.0,
+                             .azimuths = 8,
+                             .refine_above = 0.0,
+                             .n_phi = 64,
+                             .tolerance = 1e-4};
 
 }  // namespace
 
@@ -37,20 +40,11 @@ std::string ScaledBrdf::Description() const {
 
 double LargestAlbedo(const Brdf& brdf) {
   double largest = 0.0;
-  const auto take = [&](double theta_i, const Rgb& albedo) {
-    for (double a : albedo) {
-      if (!std::isfinite(a)) Fail("the directional albedo at theta_i = ", theta_i, " is ", a);
+  for (const IncidentAlbedo& at : AlbedoProfile(brdf, kGrid)) {
+    for (double a : at.albedo) {
+      if (!std::isfinite(a)) Fail("the directional albedo at theta_i = ", at.theta_i, " is ", a);
       largest = std::max(largest, a);
     }
-  };
-  for (const IncidentAlbedo& at : AlbedoProfile(brdf, kGrid)) {
-    if (at.theta_i < kLastAngle) take(at.theta_i, at.albedo);
-  }
-  const auto quadrature = AlbedoQuadrature::OnMerlRows(kGrid.n_theta, kGrid.n_phi);
-  const int azimuths = brdf.IsIsotropic() ? 1 : kGrid.azimuths;
-  for (int p = 0; p < azimuths; ++p) {
-    const Vec3 wi = FromSpherical(kLastAngle, 2.0 * std::numbers::pi * p / azimuths);
-    take(kLastAngle, DirectionalAlbedo(brdf, wi, quadrature));
   }
   return largest;
 }

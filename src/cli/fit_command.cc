@@ -59,6 +59,18 @@ NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summa
           {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}};
 }
 
+nlohmann::ordered_json EnergyJson(const EnergySummary& energy) {
+  return {{"first_max_albedo", energy.first_max_albedo},
+          {"max_albedo", energy.max_albedo},
+          {"rounds", energy.rounds},
+          {"strata", energy.strata},
+          {"correction", energy.correction},
+          {"albedos", energy.work.albedos},
+          {"albedos_skipped", energy.work.albedos_skipped},
+          {"jacobians", energy.work.jacobians},
+          {"jacobians_skipped", energy.work.jacobians_skipped}};
+}
+
 nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitProblem& problem,
                                    const FitSummary& summary, const std::string& flags) {
   measures["material"] = FLAGS_material;
@@ -69,7 +81,7 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
   measures["failed_factorizations"] = summary.failed_factorizations;
   measures["rejected_steps"] = summary.rejected_steps;
   measures["samples_used"] = summary.samples;
-  measures["energy_rounds"] = summary.energy.rounds;
+  measures["energy_term"] = EnergyJson(summary.energy);
   measures["precision_limited"] = summary.precision_limited;
   measures["seconds"] = summary.seconds;
   measures["seed"] = problem.seed;
@@ -78,6 +90,14 @@ nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitPro
   measures["version"] = PBNBRDF_VERSION;
   measures["problem"] = flags;
   return measures;
+}
+
+// What the energy term did, in a line; "" if it wasn't needed.
+std::string EnergyText(const EnergySummary& energy) {
+  if (energy.rounds == 0 && energy.correction == 0.0) return "";
+  return StrCat("energy term: largest albedo ", energy.first_max_albedo, " without it, ",
+                energy.rounds, " rounds, at the end log(1 + f) lowered by ", energy.correction,
+                "\n");
 }
 
 // The flags that repeat this fit, as a flagfile.
@@ -156,7 +176,7 @@ int RunFit(const std::string&) {
     std::cout << FLAGS_out << ": " << fit.network.Description() << "; "
               << NameOf(kTerminations, fit.summary.termination) << " after "
               << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
-              << MeasuresText(measures);
+              << MeasuresText(measures) << EnergyText(fit.summary.energy);
     if (fit.summary.termination == Termination::kDiverged) {
       std::cout << "diverged: " << fit.summary.message << "\n";
     }

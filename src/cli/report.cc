@@ -2,11 +2,30 @@
 
 #include <iomanip>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "pbnbrdf/metrics/brdf_metrics.h"
 
 namespace pbnbrdf::cli {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+// Of materials: nearer to the horizon measurements have no data, and models go astray.
+constexpr double kLastAngle = 85.0 * kDegree;
+
+// "certified", or by how much and where a directional albedo exceeds 1.
+std::string EnergyVerdict(const Energy& energy) {
+  if (energy.Conserved()) return "certified";
+  constexpr const char* kChannels[] = {"red", "green", "blue"};
+  std::ostringstream text;
+  text << std::setprecision(4) << "albedo 1 + " << energy.max_directional_albedo - 1.0 << " at "
+       << energy.theta_i / kDegree << " degrees, " << kChannels[energy.channel];
+  return text.str();
+}
+
+}  // namespace
 
 nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                                   std::size_t samples, std::uint64_t seed) {
@@ -14,12 +33,16 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
   const ColorErrors colors = MeasureColorErrors(material, fit, samples, seed);
   const Reciprocity reciprocity = MeasureReciprocity(fit);
   const Energy energy = MeasureEnergy(fit);
+  const Energy of_material = MeasureEnergy(material, {.last_angle = kLastAngle});
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
           {"hcl", reciprocity.hcl},
           {"max_directional_albedo", energy.max_directional_albedo},
+          {"energy", EnergyVerdict(energy)},
           {"eal", energy.eal},
+          {"material_max_directional_albedo", of_material.max_directional_albedo},
+          {"material_energy", EnergyVerdict(of_material)},
           {"chromaticity_error", errors.chromaticity_error},
           {"delta_e_mean", colors.delta_e_mean},
           {"delta_e_p95", colors.delta_e_p95},
@@ -36,8 +59,11 @@ std::string MeasuresText(const nlohmann::ordered_json& measures) {
       {"rmse", "root mean square error of f cos, 1/sr, same samples"},
       {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
       {"hcl", "Helmholtz continuity loss (eq. 9)"},
-      {"max_directional_albedo", "over incident angles up to 89.5 degrees; at most 1 is physical"},
+      {"max_directional_albedo", "over all incident directions; more than 1 makes energy"},
+      {"energy", "certified if at most 1 + 1e-6, by a dense quadrature of its own"},
       {"eal", "energy amplification loss (eq. 5), sr"},
+      {"material_max_directional_albedo", "of the material itself, up to 85 degrees"},
+      {"material_energy", "if above 1, a fit that conserves energy can't follow it"},
       {"chromaticity_error", "mean |log1p(|f cos|^2) - log1p(|f^ cos|^2)| (eq. 7)"},
       {"delta_e_mean", "CIE Delta E 2000 of the lit colour, pi f cos cut to [0, 1], same samples"},
       {"delta_e_p95", "its 95th percentile; about 1 is just visible"},
@@ -50,9 +76,11 @@ std::string MeasuresText(const nlohmann::ordered_json& measures) {
   std::ostringstream text;
   for (const auto& [key, meaning] : kMeanings) {
     const auto& value = measures.at(key);
-    text << std::left << std::setw(24) << key << std::setw(13);
+    text << std::left << std::setw(33) << key << std::setw(13);
     if (value.is_number_float()) {
       text << std::setprecision(5) << value.get<double>();
+    } else if (value.is_string()) {
+      text << value.get<std::string>() + "  ";
     } else {
       text << value.dump();
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pbnbrdf/network/fast_neural_brdf.h"
 #include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // Between the rounds, and in the end.
 constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .n_phi = 64, .tolerance = 1e-4};
-constexpr AlbedoGrid kLastGrid = {.angles = 200, .n_phi = 64};
+constexpr AlbedoGrid kLastGrid = {.angles = 160, .n_phi = 64};
 constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 constexpr double kLeastStep = 1e-7;      // of a correction
@@ -44,10 +45,10 @@ EnergyConstraints::EnergyConstraints(const FitProblem& problem)
 }
 
 double EnergyConstraints::Measure(const std::vector<double>& weights) {
-  const NeuralBrdf network(shape_, weights);
+  const FastNeuralBrdf network(NeuralBrdf(shape_, weights));
   profile_ = AlbedoProfile(network, kRoundGrid);
   // What the energy term's own quadrature has to be told.
-  const auto fine = AlbedoQuadrature::OnMerlRows(3, 96);
+  const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
     const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);

@@ -24,7 +24,7 @@ class EnergyConstraints {
  public:
   explicit EnergyConstraints(const FitProblem& problem);
 
-  // Measures the network. Returns its largest directional albedo.
+  // Measures the network, in single precision. Returns its largest directional albedo.
   double Measure(const std::vector<double>& weights);
 
   // Adds strata where the albedos that were measured last are too large.

@@ -11,6 +11,7 @@
 #include "pbnbrdf/solve/adam.h"
 #include "pbnbrdf/solve/ceres_solvers.h"
 #include "pbnbrdf/solve/tiny_lm.h"
+#include "start.h"
 
 namespace pbnbrdf {
 namespace {
@@ -27,12 +28,6 @@ constexpr double kOverfit = 1.1;
 
 constexpr double kRoundingShare = 0.01;
 constexpr int kStartIterations = 12;
-constexpr std::uint64_t kStartSeed = 0xbf58476d1ce4e5b9;
-
-constexpr int kMostRestarts = 5;
-constexpr std::uint64_t kRestartSeed = 0x94d049bb133111eb;
-constexpr double kRoundingSpread = 1e-6;
-constexpr std::size_t kStartSamples = 1024;  // that tell whether weights are a start
 
 // When a stage is slow, more samples promise more than more iterations; idle, nothing does.
 constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
@@ -42,22 +37,11 @@ constexpr int kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
 
 // Of the stages with the energy term.
 constexpr int kMostEnergyRounds = 24, kRoundIterations = 40;
-constexpr double kSmallCorrection = 0.05;  // of the mean absolute log error
-constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
-constexpr double kLeastCost = 1e-7;         // of the other terms, for the weight of this one
+constexpr double kSmallCorrection = 0.05;   // of the mean absolute log error
+constexpr double kClearlyConserved = 0.99;   // a largest albedo that needs no finer check
+constexpr double kLeastCost = 1e-7;          // of the other terms, for the weight of this one
 constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
 constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
-
-// By more than rounding makes of a constant.
-bool Varies(const std::vector<Rgb>& values) {
-  return std::any_of(values.begin(), values.end(), [&](const Rgb& value) {
-    for (int c = 0; c < NetworkShape::kChannels; ++c) {
-      const double first = values.front()[c];
-      if (std::abs(value[c] - first) > kRoundingSpread * (1.0 + first)) return true;
-    }
-    return false;
-  });
-}
 
 class Fitter {
  public:
@@ -83,17 +67,8 @@ class Fitter {
   // Where the first stage starts: at the given weights, or at random ones. Throws Error if these
   // lead nowhere.
   void Start(const FitProblem& problem) {
-    if (weights_.empty()) return DrawStart(problem, 0);
-    const StartQuality quality = JudgeStart(problem);
-    if (quality == StartQuality::kNotFinite) {
-      Fail("initial_weights: the cost or its gradient isn't finite there");
-    }
-    if (quality == StartQuality::kStuck) {
-      Fail("initial_weights: the gradient is 0 there and the cost isn't");
-    }
-    if (quality == StartQuality::kConstant) {
-      Fail("initial_weights: a constant network that stays one: its first layer has no gradient");
-    }
+    if (weights_.empty()) return StartAnew(problem, 0);
+    CheckStart(problem, samples_, weights_);
   }
 
   // Leaves the best of several short runs.
@@ -101,7 +76,7 @@ class Fitter {
     std::vector<double> best;
     double least = std::numeric_limits<double>::infinity();
     for (int start = 0; start < options_.starts && MayContinue(); ++start) {
-      if (start > 0) DrawStart(problem, start);
+      if (start > 0) StartAnew(problem, start);
       StageOptions stage = MakeStage();
       stage.max_iterations = std::min(kStartIterations, options_.max_iterations);
       stage.on_iteration = [&](int iteration, double cost) { return Report(iteration, cost); };
@@ -170,7 +145,9 @@ class Fitter {
   void RunEnergyRounds(FitProblem problem, EnergyConstraints* constraints) {
     EnergySummary& energy = summary_.energy;
     double most_over_balance = 1.0;
-    while (energy.rounds < kMostEnergyRounds && MayContinue()) {
+    const int most_iterations = summary_.iterations + options_.max_iterations;
+    while (energy.rounds < kMostEnergyRounds && summary_.iterations < most_iterations &&
+           MayContinue()) {
       const double error =
           MakeObjective(problem, validation_samples_)->MeanAbsLogError(weights_.data());
       if (CorrectionOf(energy.max_albedo) <= kSmallCorrection * error) break;
@@ -179,7 +156,8 @@ class Fitter {
       const double grown = energy.rounds > 0 ? kWeightGrowth : 1.0;
       problem.energy_weight = std::min(problem.energy_weight * grown,
                                        most_over_balance * BalancedEnergyWeight(problem));
-      RunStages(problem, std::min(kRoundIterations * Pace(), options_.max_iterations));
+      RunStages(problem,
+                std::min(kRoundIterations * Pace(), most_iterations - summary_.iterations));
       const double excess = energy.max_albedo - 1.0;
       energy.max_albedo = constraints->Measure(weights_);
       const bool fell = energy.max_albedo - 1.0 < kRoundFall * excess;
@@ -259,51 +237,11 @@ class Fitter {
     return result.cost;
   }
 
-  enum class StartQuality { kGood, kConstant, kStuck, kNotFinite };
-
-  // Whether a fit can go on from the weights. kConstant: the material isn't constant but the network
-  // is and stays so, since no weight of its first layer has a gradient, as with a layer of dead units;
-  // kStuck: no weight at all has.
-  StartQuality JudgeStart(const FitProblem& problem) const {
-    const auto samples = std::span(samples_).first(std::min(kStartSamples, samples_.size()));
-    const NetworkShape shape = problem.Shape();
-    double cost = 0.0;
-    std::vector<double> gradient(shape.num_weights());
-    if (!MakeObjective(problem, samples)->Gradient(weights_.data(), &cost, gradient.data())) {
-      return StartQuality::kNotFinite;
-    }
-    const auto rest = gradient.begin() + shape.block_size(0);
-    const auto is_zero = [](double slope) { return slope == 0.0; };
-    if (cost == 0.0 || !std::all_of(gradient.begin(), rest, is_zero)) return StartQuality::kGood;
-    if (std::all_of(rest, gradient.end(), is_zero)) return StartQuality::kStuck;
-    std::vector<DirectionPair> pairs;
-    std::vector<Rgb> wanted, values(samples.size());
-    for (const BrdfSample& sample : samples) {
-      pairs.push_back(sample.pair);
-      wanted.push_back(sample.value);
-    }
-    NeuralBrdf(shape, weights_).EvaluateUnclipped(pairs, values);
-    return Varies(wanted) && !Varies(values) ? StartQuality::kConstant : StartQuality::kGood;
-  }
-
-  // Random weights of the start-th start: the first of a few that a fit can go on from. Those of a
-  // constant network have to do if there are no others.
-  void DrawStart(const FitProblem& problem, int start) {
-    std::vector<double> constant;
-    for (int restart = 0; restart <= kMostRestarts; ++restart) {
-      const std::uint64_t seed = problem.seed + static_cast<std::uint64_t>(start) * kStartSeed +
-                                 static_cast<std::uint64_t>(restart) * kRestartSeed;
-      weights_ = InitialWeights(problem.Shape(), samples_, seed, problem.initialization);
-      const StartQuality quality = JudgeStart(problem);
-      if (quality == StartQuality::kGood) return;
-      if (quality == StartQuality::kConstant && constant.empty()) constant = weights_;
-      if (restart < kMostRestarts) ++summary_.restarts;
-    }
-    if (constant.empty()) {
-      Fail("no start: at each of ", kMostRestarts + 1,
-           " random ones the cost isn't finite or its gradient is 0");
-    }
-    weights_ = constant;
+  // At random weights, those of the start-th start.
+  void StartAnew(const FitProblem& problem, int start) {
+    RandomStart drawn = DrawStart(problem, samples_, start);
+    weights_ = std::move(drawn.weights);
+    summary_.restarts += drawn.restarts;
   }
 
   // What a slow stage wants; kNone: to go on.

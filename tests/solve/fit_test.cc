@@ -245,30 +245,39 @@ std::unique_ptr<Brdf> MetalOfAlbedo(double albedo) {
   return ScaleToAlbedo(std::make_unique<GgxBrdf>(Rgb{0.9, 0.8, 0.7}, 0.3), albedo);
 }
 
-TEST(FitBrdf, ConservesEnergyWhereTheMaterialDoesNot) {
+TEST(FitBrdf, WithoutTheTermBrightMaterialsStayBright) {
+  const auto too_bright = MetalOfAlbedo(1.2);
+  const Fit fit = FitBrdf(*too_bright, SmallProblem(), {});
+  EXPECT_EQ(fit.summary.energy.rounds, 0);
+  EXPECT_NEAR(AlbedoOf(fit.network), AlbedoOf(*too_bright), 0.02);
+}
+
+class EnergyTest : public testing::TestWithParam<std::pair<Solver, double>> {};
+
+TEST_P(EnergyTest, IsConservedWhereTheMaterialDoesNot) {
   const auto too_bright = MetalOfAlbedo(1.2);
   FitProblem problem = SmallProblem();
-  const double albedo = AlbedoOf(*too_bright);
-  const Fit without = FitBrdf(*too_bright, problem, {});
-  EXPECT_EQ(without.summary.energy.rounds, 0);
-  EXPECT_NEAR(AlbedoOf(without.network), albedo, 0.02);
+  problem.energy_theta = 32;
+  problem.energy_phi = 16;
+  problem.energy_weight = GetParam().second;
   FitOptions options;
-  options.max_iterations = 50;
-  for (auto [solver, weight] : {std::pair{Solver::kTinyLm, 1e-9}, {Solver::kTinyLm, 1e300},
-                                {Solver::kLm, 1.0}, {Solver::kLbfgs, 1.0}}) {
-    problem.energy_weight = weight;
-    options.solver = solver;
-    const Fit fit = FitBrdf(*too_bright, problem, options);
-    const EnergySummary& energy = fit.summary.energy;
-    EXPECT_TRUE(MeasureEnergy(fit.network).Conserved())
-        << NameOf(kSolvers, solver) << " " << weight << ": " << MeasureEnergy(fit.network).max_directional_albedo - 1.0 << " at " << MeasureEnergy(fit.network).theta_i << ", " << energy.max_albedo;
-    EXPECT_NEAR(AlbedoOf(fit.network), std::min(albedo, 1.0), 0.05);
-    EXPECT_GT(energy.first_max_albedo, 1.1);
-    EXPECT_GT(energy.rounds, 0);
-    EXPECT_LT(energy.correction, 0.01);
-    EXPECT_GT(energy.work.jacobians, 0);
-  }
+  options.solver = GetParam().first;
+  options.max_iterations = options.solver == Solver::kLbfgs ? 1000 : 200;
+  const Fit fit = FitBrdf(*too_bright, problem, options);
+  const EnergySummary& energy = fit.summary.energy;
+  EXPECT_LE(MeasureEnergy(fit.network).max_directional_albedo, 1.0 + 1e-6);
+  EXPECT_NEAR(AlbedoOf(fit.network), std::min(AlbedoOf(*too_bright), 1.0), 0.05);
+  EXPECT_GT(energy.first_max_albedo, 1.1);
+  EXPECT_GT(energy.rounds, 0);
+  EXPECT_LT(energy.correction, 0.01);
+  EXPECT_GT(energy.work.jacobians, 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(SolversAndWeights, EnergyTest,
+                         testing::Values(std::pair{Solver::kTinyLm, 1e-9},
+                                         std::pair{Solver::kTinyLm, 1e300},
+                                         std::pair{Solver::kLm, 1.0},
+                                         std::pair{Solver::kLbfgs, 1.0}));
 
 TEST(FitBrdf, WithoutRoundsTheCorrectionAloneConservesEnergy) {
   FitProblem problem = SmallProblem();

@@ -1,6 +1,7 @@
 // albedo.h: the directional albedo a(wi) = integral of f cos_o dwo (eq. 2), by quadrature.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "pbnbrdf/brdf/brdf.h"
@@ -41,7 +42,7 @@ class AlbedoQuadrature {
   std::vector<AlbedoNode> Nodes(const Vec3& wi) const;
 
  private:
-  // A part of [0, theta_max], in theta_h = first + (last - first) x^power.
+  // A part of [0, theta_max], in theta_h = first + (last - first) x^power, power 1 or 3.
   struct Cell {
     double first, last;
     int power;
@@ -59,10 +60,11 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n
 
 // Incident directions of a profile, and how well their albedos are known. Each is integrated with 64
 // x 32 nodes and then, as often as four times, by AlbedoQuadrature::OnMerlRows with more and more,
-// until two agree within the tolerance or the albedo is below `refine_above` by a wide margin, ten
-// times their difference.
+// until two agree within the tolerance, or a hundredth of what the albedo is above 1, or it is below
+// `refine_above` by a wide margin, ten times their difference.
 struct AlbedoGrid {
-  int angles = 512;   // theta_i: dense towards the horizon
+  int angles = 300;   // theta_i: dense towards the last
+  double last_angle = 0.5 * std::numbers::pi;
   int azimuths = 16;  // phi_i, of anisotropic Brdfs
   double refine_above = 1.0;
   int n_theta = 2, n_phi = 80;  // to begin with; then half as many more each way
@@ -77,7 +79,7 @@ struct IncidentAlbedo {
 
 // The directional albedos at incident directions all over the hemisphere, in parallel. Additions
 // follow: the local maxima over theta_i that may be above grid.refine_above, which mostly lie
-// between the directions of the grid, and the horizon.
+// between the directions of the grid, and the last angle.
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid);
 
 }  // namespace pbnbrdf

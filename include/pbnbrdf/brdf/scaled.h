@@ -29,7 +29,7 @@ class ScaledBrdf final : public Brdf {
 };
 
 // The largest directional albedo (albedo.h) over the channels and incident directions of up to 85
-// degrees: nearer to the horizon tables have no data. Throws Error if an albedo isn't finite.
+// degrees, within 1e-4: nearer to the horizon tables have no data. Throws Error if an albedo isn't finite.
 double LargestAlbedo(const Brdf& brdf);
 
 // The source times the factor that makes its LargestAlbedo `albedo`. Measured scales are uncertain,

@@ -1,0 +1,26 @@
+// start.h: weights that a fit can start from.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pbnbrdf/problem/fit_problem.h"
+
+namespace pbnbrdf {
+
+// Throws Error if a fit can't go on from weights that were given: the cost or its gradient isn't
+// finite; or the gradient is 0 and the cost isn't; or the network is constant and stays so, no weight
+// of its first layer having a gradient, and the material isn't constant.
+void CheckStart(const FitProblem& problem, std::span<const BrdfSample> samples,
+                const std::vector<double>& weights);
+
+struct RandomStart {
+  std::vector<double> weights;
+  int restarts = 0;  // weights drawn before these that wouldn't do
+};
+
+// Random weights, others for each index: the first of a few that a fit can go on from. Those of a
+// constant network have to do if there are no others. Throws Error if there are none.
+RandomStart DrawStart(const FitProblem& problem, std::span<const BrdfSample> samples, int index);
+
+}  // namespace pbnbrdf
