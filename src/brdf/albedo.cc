@@ -65,7 +65,7 @@ class RefinedAlbedo {
     int n_theta = grid.n_theta, n_phi = grid.n_phi;
     for (int level = 0; level < kLevels; ++level) {
       levels_.push_back(AlbedoQuadrature::OnMerlRows(n_theta, n_phi));
-      n_theta += (n_theta + 1) / 2;
+      n_theta = std::min(n_theta + (n_theta + 1) / 2, kMostTheta);
       n_phi += n_phi / 2;
     }
   }
@@ -91,7 +91,8 @@ class RefinedAlbedo {
   }
 
  private:
-  static constexpr int kLevels = 4;
+  static constexpr int kLevels = 7;
+  static constexpr int kMostTheta = 6;  // exact enough; what needs more are ridges over phi_h
   static constexpr double kCoarseError = 2e-3;  // relative
   static constexpr double kExcessError = 0.01;  // of what the albedo is above 1
   static constexpr double kMargin = 10.0;
@@ -142,8 +143,9 @@ AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi) : x_(n_theta) {
   const auto add_half = [&](double first, int n) {
     const GaussLegendre rule(n);
     for (int k = 0; k < n; ++k) {
-      phi_.push_back(first + kPi * rule.nodes[k]);
-      phi_weights_.push_back(kPi * rule.weights[k]);
+      const double x = rule.nodes[k];
+      phi_.push_back(first + kPi * x * x * (3.0 - 2.0 * x));
+      phi_weights_.push_back(kPi * rule.weights[k] * 6.0 * x * (1.0 - x));
     }
   };
   add_half(-0.5 * kPi, n_phi / 2);

@@ -31,7 +31,7 @@ double AdaptiveSimpson(const std::function<double(double)>& f, double a, double 
 // The albedo of a lobe about the half vector, over theta_h in pieces that start about `width` and
 // grow, and over phi_h within. Shares nothing with AlbedoQuadrature but dwo = 4 (wi.h) dwh.
 double AdaptiveAlbedo(const Brdf& brdf, double width, double theta_i) {
-  constexpr double kTolerance = 2e-6;
+  constexpr double kTolerance = 1e-7;
   const Vec3 wi = FromSpherical(theta_i, 0.0);
   const auto at = [&](double theta_h, double phi) {
     const Vec3 h = FromSpherical(theta_h, phi);
@@ -73,7 +73,7 @@ std::vector<Lobe> Lobes() {
   return lobes;
 }
 
-TEST(AlbedoQuadrature, Is64x32NodesWithin1e3OfAnAdaptiveIntegral) {
+TEST(AlbedoQuadrature, With64x32NodesIsWithin3e4OfAnAdaptiveIntegral) {
   double worst = 0.0;
   for (const Lobe& lobe : Lobes()) {
     for (double degrees : {0.0, 45.0, 80.0, 88.0, 89.5}) {
@@ -81,7 +81,7 @@ TEST(AlbedoQuadrature, Is64x32NodesWithin1e3OfAnAdaptiveIntegral) {
       const double exact = AdaptiveAlbedo(*lobe.brdf, lobe.width, theta_i);
       const double albedo =
           DirectionalAlbedo(*lobe.brdf, FromSpherical(theta_i, 0.0), 64, 32)[0];
-      EXPECT_NEAR(albedo, exact, 1e-3 * exact)
+      EXPECT_NEAR(albedo, exact, 3e-4 * exact)
           << lobe.name << " " << lobe.width << " at " << degrees;
       worst = std::max(worst, std::abs(albedo / exact - 1.0));
     }
@@ -89,13 +89,13 @@ TEST(AlbedoQuadrature, Is64x32NodesWithin1e3OfAnAdaptiveIntegral) {
   RecordProperty("worst_relative_error", std::to_string(worst));
 }
 
-TEST(AlbedoQuadrature, FinerNodesAreWithin2e5OfAnAdaptiveIntegral) {
+TEST(AlbedoQuadrature, With160x96NodesIsWithin1e6OfAnAdaptiveIntegral) {
   for (const Lobe& lobe : Lobes()) {
     for (double degrees : {0.0, 80.0, 89.5}) {
       const double theta_i = degrees * kDegree;
       const double exact = AdaptiveAlbedo(*lobe.brdf, lobe.width, theta_i);
       EXPECT_NEAR(DirectionalAlbedo(*lobe.brdf, FromSpherical(theta_i, 0.0), 160, 96)[0], exact,
-                  2e-5)
+                  1e-6)
           << lobe.name << " " << lobe.width << " at " << degrees;
     }
   }

@@ -209,7 +209,7 @@ TEST(Ablation, CountsFitsThatFail) {
 
 TEST(Ablation, RejectsWhatItCantDo) {
   const TemporaryFolder folder;
-  for (const char* flag : {"--tables=4", "--seeds=0", "--base=other", "--chromaticity_weights=-1",
+  for (const char* flag : {"--tables=5", "--seeds=0", "--base=other", "--chromaticity_weights=-1",
                            "--chromaticity_weights=x", "--heldout_samples=0", "--scale_to_albedo=0",
                            "--samples=0", "--materials=sgd:brass", "--materials=absent.binary",
                            "--materials=builtin:satin-gold,builtin:satin-gold"}) {

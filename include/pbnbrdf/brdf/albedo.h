@@ -20,14 +20,14 @@ struct AlbedoNode {
   double weight;  // > 0, includes cos_o and the solid angle
 };
 
-// Sum of weight * f(pair) = a(wi), within 0.1 % with 64 x 32 nodes for lobes from Lambertian to 0.1
-// degree wide, at up to 89.5 degrees of incidence, and within 2e-5 with 160 x 96.
+// Sum of weight * f(pair) = a(wi), within 0.03 % with 64 x 32 nodes for lobes from Lambertian to 0.1
+// degree wide, at up to 89.5 degrees of incidence, and within 1e-6 with 160 x 96.
 //
 // The nodes are stratified in the half vector, dense about the mirror direction, where a sharp lobe
 // falls between the points of any grid that is uniform in wo: theta_h = theta_max u^3, with
 // dwo = 4 (wi.h) dwh and cos_o = 0 at theta_max(phi_h). Towards grazing incidence theta_max falls
 // steeply where h tilts sideways, 90 degrees from the plane of incidence: phi_h is divided there,
-// and each half, as u, has a Gauss-Legendre rule, whose nodes crowd at the ends.
+// and crowds there as x^2 (3 - 2 x) does. u and x have Gauss-Legendre rules.
 class AlbedoQuadrature {
  public:
   // n_theta >= 1, n_phi >= 2
@@ -59,7 +59,7 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, const AlbedoQuadrature& 
 Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n_phi = 64);
 
 // Incident directions of a profile, and how well their albedos are known. Each is integrated with 64
-// x 32 nodes and then, as often as four times, by AlbedoQuadrature::OnMerlRows with more and more,
+// x 32 nodes and then, as often as seven times, by AlbedoQuadrature::OnMerlRows with more and more,
 // until two agree within the tolerance, or a hundredth of what the albedo is above 1, or it is below
 // `refine_above` by a wide margin, ten times their difference.
 struct AlbedoGrid {
