@@ -58,44 +58,62 @@ double LargestDifference(const Rgb& a, const Rgb& b) {
   return Largest({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-// As AlbedoGrid says.
+// An albedo as far as it is known.
+struct Estimate {
+  Rgb albedo;
+  double error;     // about
+  std::size_t level = 0;  // of refinement
+};
+
+// Albedos by quadratures that are refined as AlbedoGrid says.
 class RefinedAlbedo {
  public:
   RefinedAlbedo(const Brdf& brdf, const AlbedoGrid& grid) : brdf_(brdf), grid_(grid) {
     int n_theta = grid.n_theta, n_phi = grid.n_phi;
-    for (int level = 0; level < kLevels; ++level) {
+    for (int level = 0; level < grid.refinements; ++level) {
       levels_.push_back(AlbedoQuadrature::OnMerlRows(n_theta, n_phi));
       n_theta = std::min(n_theta + (n_theta + 1) / 2, kMostTheta);
       n_phi += n_phi / 2;
     }
   }
 
-  Rgb At(double theta_i, double phi_i) const {
-    const Vec3 wi = FromSpherical(theta_i, phi_i);
-    Rgb albedo = DirectionalAlbedo(brdf_, wi, coarse_);
-    double error = kCoarseError * Largest(albedo);
-    for (const AlbedoQuadrature& level : levels_) {
-      const double largest = Largest(albedo);
-      const double tolerance = std::max(grid_.tolerance, kExcessError * (largest - 1.0));
-      if (error <= tolerance || largest + kMargin * error < grid_.refine_above) break;
-      const Rgb finer = DirectionalAlbedo(brdf_, wi, level);
-      error = LargestDifference(finer, albedo);
-      albedo = finer;
-    }
-    return albedo;
+  // With the first few refinements, if it needs them.
+  Estimate At(const Vec3& wi) const {
+    Estimate estimate;
+    estimate.albedo = DirectionalAlbedo(brdf_, wi, coarse_);
+    estimate.error = kCoarseError * Largest(estimate.albedo);
+    const Rgb bound = {grid_.refine_above, grid_.refine_above, grid_.refine_above};
+    Refine(wi, bound, std::min(levels_.size(), kFirstLevels), &estimate);
+    return estimate;
   }
 
-  // Whether an albedo may be above grid.refine_above, as far as the coarse quadrature tells.
-  bool IsNear(double albedo) const {
-    return albedo * (1.0 + kMargin * kCoarseError) > grid_.refine_above;
+  // With more of them, where a channel may exceed the bound.
+  void Refine(const Vec3& wi, const Rgb& bound, Estimate* estimate) const {
+    Refine(wi, bound, levels_.size(), estimate);
+  }
+
+  // Whether a channel may exceed the bound.
+  static bool MayExceed(const Estimate& estimate, const Rgb& bound) {
+    bool may = false;
+    for (int c = 0; c < 3; ++c) may |= !(estimate.albedo[c] + kMargin * estimate.error < bound[c]);
+    return may;
   }
 
  private:
-  static constexpr int kLevels = 7;
   static constexpr int kMostTheta = 6;  // exact enough; what needs more are ridges over phi_h
   static constexpr double kCoarseError = 2e-3;  // relative
-  static constexpr double kExcessError = 0.01;  // of what the albedo is above 1
   static constexpr double kMargin = 10.0;
+  static constexpr std::size_t kFirstLevels = 2;
+
+  void Refine(const Vec3& wi, const Rgb& bound, std::size_t most, Estimate* estimate) const {
+    while (estimate->level < most && MayExceed(*estimate, bound)) {
+      const double excess = Largest(estimate->albedo) - 1.0;
+      if (estimate->error <= std::max(grid_.tolerance, grid_.excess_tolerance * excess)) return;
+      const Rgb finer = DirectionalAlbedo(brdf_, wi, levels_[estimate->level++]);
+      estimate->error = LargestDifference(finer, estimate->albedo);
+      estimate->albedo = finer;
+    }
+  }
 
   const Brdf& brdf_;
   const AlbedoGrid& grid_;
@@ -103,23 +121,47 @@ class RefinedAlbedo {
   std::vector<AlbedoQuadrature> levels_;
 };
 
-// What may lie between the directions of a row of the same phi_i, theta_i growing, and behind its
-// end: the local maxima, and the last angle.
-std::vector<IncidentAlbedo> Additions(const RefinedAlbedo& refined, double last_angle,
-                                      std::span<const IncidentAlbedo> row) {
-  const double phi_i = row[0].phi_i;
-  std::vector<IncidentAlbedo> additions;
-  const auto add = [&](double theta_i) {
-    additions.push_back({theta_i, phi_i, 0.0, refined.At(theta_i, phi_i)});
-  };
+// The theta_i that may lie between those of a row of the same phi_i, or behind its end: the local
+// maxima that come near the largest albedos, and the last angle.
+std::vector<double> MoreAngles(std::span<const IncidentAlbedo> row, const Rgb& largest,
+                               const AlbedoGrid& grid) {
+  constexpr double kNear = 0.98;
+  std::vector<double> angles = {std::min(grid.last_angle, kHorizon)};
   for (std::size_t k = 1; k + 1 < row.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
+      const bool is_near = row[k].albedo[c] > kNear * std::max(largest[c], grid.refine_above);
       double theta_i;
-      if (refined.IsNear(row[k].albedo[c]) && Vertex(&row[k], c, &theta_i)) add(theta_i);
+      if (is_near && Vertex(&row[k], c, &theta_i)) angles.push_back(theta_i);
     }
   }
-  add(std::min(last_angle, kHorizon));
-  return additions;
+  return angles;
+}
+
+// Of Estimates or IncidentAlbedos.
+template <typename Albedos>
+Rgb LargestByChannel(const Albedos& albedos) {
+  Rgb largest = {};
+  for (const auto& at : albedos) {
+    for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], at.albedo[c]);
+  }
+  return largest;
+}
+
+// The albedos at all directions of a profile; those that may be the largest ones with all care.
+void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid,
+          std::span<IncidentAlbedo> profile) {
+  std::vector<Estimate> estimates(profile.size());
+  const auto wi = [&](std::size_t n) {
+    return FromSpherical(profile[n].theta_i, profile[n].phi_i);
+  };
+  tbb::parallel_for(std::size_t{0}, profile.size(),
+                    [&](std::size_t n) { estimates[n] = refined.At(wi(n)); });
+  Rgb bound = LargestByChannel(estimates);
+  for (double& channel : bound) channel = std::max(channel, grid.refine_above);
+  tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
+    refined.Refine(wi(n), bound, &estimates[n]);
+    profile[n].albedo = estimates[n].albedo;
+  });
 }
 
 }  // namespace
@@ -214,19 +256,25 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta, int n_phi) 
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid) {
   const RefinedAlbedo refined(brdf, grid);
   const int azimuths = brdf.IsIsotropic() ? 1 : grid.azimuths;
-  std::vector<IncidentAlbedo> profile(static_cast<std::size_t>(azimuths) * grid.angles);
-  tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
-    const int row = static_cast<int>(n) / grid.angles;
-    const auto [theta_i, solid_angle] = StratumOf(grid, static_cast<int>(n) % grid.angles);
-    const double phi_i = 2.0 * kPi * row / azimuths;
-    profile[n] = {theta_i, phi_i, solid_angle / azimuths, refined.At(theta_i, phi_i)};
-  });
-  std::vector<std::vector<IncidentAlbedo>> additions(azimuths);
-  tbb::parallel_for(0, azimuths, [&](int row) {
-    const std::size_t first = static_cast<std::size_t>(row) * grid.angles;
-    additions[row] = Additions(refined, grid.last_angle, std::span(profile).subspan(first, grid.angles));
-  });
-  for (const auto& row : additions) profile.insert(profile.end(), row.begin(), row.end());
+  std::vector<IncidentAlbedo> profile;
+  for (int row = 0; row < azimuths; ++row) {
+    for (int k = 0; k < grid.angles; ++k) {
+      const auto [theta_i, solid_angle] = StratumOf(grid, k);
+      profile.push_back({theta_i, 2.0 * kPi * row / azimuths, solid_angle / azimuths, {}});
+    }
+  }
+  Fill(refined, grid, profile);
+  const Rgb largest = LargestByChannel(profile);
+  std::vector<IncidentAlbedo> additions;
+  for (int row = 0; row < azimuths; ++row) {
+    const auto of_row = std::span(profile).subspan(
+        static_cast<std::size_t>(row) * grid.angles, grid.angles);
+    for (double theta_i : MoreAngles(of_row, largest, grid)) {
+      additions.push_back({theta_i, of_row[0].phi_i, 0.0, {}});
+    }
+  }
+  Fill(refined, grid, additions);
+  profile.insert(profile.end(), additions.begin(), additions.end());
   return profile;
 }
 

@@ -10,12 +10,17 @@
 namespace pbnbrdf {
 namespace {
 
+// The same nodes whatever the values, so that the albedos of a scaled source are those of the source,
+// scaled.
 constexpr AlbedoGrid kGrid = {.angles = 64,
-                             .last_angle = 85.0 * std::numbers::pi / 180.0,
-                             .azimuths = 8,
-                             .refine_above = 0.0,
-                             .n_phi = 64,
-                             .tolerance = 1e-4};
+                              .last_angle = 85.0 * std::numbers::pi / 180.0,
+                              .azimuths = 8,
+                              .refine_above = 0.0,
+                              .tolerance = 0.0,
+                              .excess_tolerance = 0.0,
+                              .n_theta = 3,
+                              .n_phi = 64,
+                              .refinements = 1};
 
 }  // namespace
 

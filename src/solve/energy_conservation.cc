@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 // Between the rounds, and in the end.
-constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .n_phi = 64, .tolerance = 1e-4};
+constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .tolerance = 1e-4, .n_phi = 64};
 constexpr AlbedoGrid kLastGrid = {.angles = 160, .n_phi = 64};
 constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata

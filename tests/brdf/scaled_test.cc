@@ -32,10 +32,10 @@ double LargestBetween(const Brdf& brdf) {
 TEST(ScaleToAlbedo, MakesItTheLargestAlbedo) {
   for (const char* name : {"spectralon", "white-sand", "satin-gold", "blue-plastic"}) {
     const auto scaled = ScaleToAlbedo(MakeBuiltin(name), 0.99);
-    EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-4) << name;
+    EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-12) << name;
     EXPECT_LT(LargestBetween(*scaled), 0.9905) << name;
   }
-  EXPECT_NEAR(LargestAlbedo(*ScaleToAlbedo(MakeBuiltin("satin-gold"), 1.5)), 1.5, 1e-4);
+  EXPECT_NEAR(LargestAlbedo(*ScaleToAlbedo(MakeBuiltin("satin-gold"), 1.5)), 1.5, 1e-12);
 }
 
 TEST(ScaleToAlbedo, OfALambertianIsKnown) {
@@ -50,7 +50,7 @@ TEST(ScaleToAlbedo, OfSgdMaterials) {
   for (const char* name : {"chrome-steel", "pink-felt", "alum-bronze"}) {
     const auto scaled =
         ScaleToAlbedo(std::make_unique<SgdBrdf>(SgdBrdf::Read(parameters, name)), 0.99);
-    EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-4) << name;
+    EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-12) << name;
   }
 }
 
@@ -69,7 +69,7 @@ class NarrowlyKnownBrdf final : public PointwiseBrdf {
 TEST(ScaleToAlbedo, OfATableKeepsWhatIsKnown) {
   const MerlBrdf table = MerlBrdf::Tabulate(NarrowlyKnownBrdf());
   const auto scaled = ScaleToAlbedo(std::make_unique<MerlBrdf>(table), 0.99);
-  EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-4);
+  EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-12);
   int known = 0, unknown = 0;
   for (const DirectionPair& pair : HardAndRandomPairs(1000, /*seed=*/3)) {
     EXPECT_EQ(scaled->IsKnown(pair), table.IsKnown(pair));

@@ -242,17 +242,31 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : measures.items()) {
     keys.push_back(key);
-    EXPECT_TRUE(value.is_number()) << key;
+    EXPECT_EQ(value.is_number(), !key.ends_with("energy")) << key;
   }
   EXPECT_THAT(keys, testing::UnorderedElementsAre(
-                        "mean_abs_log_error", "rmse", "hrl", "hcl", "max_directional_albedo", "eal",
+                        "mean_abs_log_error", "rmse", "hrl", "hcl", "max_directional_albedo",
+                        "energy", "eal", "material_max_directional_albedo", "material_energy",
                         "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
                         "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
+  EXPECT_EQ(measures["energy"], "certified");
   const Result text = Run("eval --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
   EXPECT_THAT(text.out, HasSubstr("Helmholtz reciprocity loss (eq. 8)"));
   for (const std::string& key : keys) EXPECT_THAT(text.out, HasSubstr(key + " "));
+}
+
+TEST_F(Cli, EvalSaysWhereEnergyIsMade) {
+  const std::string material = " --material=builtin:spectralon --scale_to_albedo=1.5 ";
+  ASSERT_EQ(Run("fit --terms=log" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
+  const std::string eval = "eval --json --eval_samples=2000 --fit=" + Path("a.safetensors");
+  const json measures = json::parse(Run(eval + material).out);
+  EXPECT_THAT(std::string(measures["energy"]), testing::StartsWith("albedo 1 + 0."));
+  EXPECT_THAT(std::string(measures["material_energy"]), testing::StartsWith("albedo 1 + 0.5 at "));
+  ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("b.safetensors")).status, 0);
+  const std::string eval_b = "eval --json --eval_samples=2000 --fit=" + Path("b.safetensors");
+  EXPECT_EQ(json::parse(Run(eval_b + material).out)["energy"], "certified");
 }
 
 TEST_F(Cli, ANetworkIsAMaterialToo) {

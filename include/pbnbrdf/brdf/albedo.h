@@ -59,16 +59,17 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, const AlbedoQuadrature& 
 Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n_phi = 64);
 
 // Incident directions of a profile, and how well their albedos are known. Each is integrated with 64
-// x 32 nodes and then, as often as seven times, by AlbedoQuadrature::OnMerlRows with more and more,
-// until two agree within the tolerance, or a hundredth of what the albedo is above 1, or it is below
-// `refine_above` by a wide margin, ten times their difference.
+// x 32 nodes and then by AlbedoQuadrature::OnMerlRows with more and more, until two agree within a
+// tolerance, or it is below `refine_above` by a wide margin, ten times their difference; after two
+// refinements, also if it is so below the largest albedo of all.
 struct AlbedoGrid {
-  int angles = 300;   // theta_i: dense towards the last
+  int angles = 300;  // theta_i: dense towards the last
   double last_angle = 0.5 * std::numbers::pi;
   int azimuths = 16;  // phi_i, of anisotropic Brdfs
   double refine_above = 1.0;
-  int n_theta = 2, n_phi = 80;  // to begin with; then half as many more each way
-  double tolerance = 1e-6;
+  double tolerance = 1e-6, excess_tolerance = 0.01;  // or so much of what the albedo is above 1
+  int n_theta = 2, n_phi = 80;                       // to begin with
+  int refinements = 7;                               // at most; each has half as many more each way
 };
 
 struct IncidentAlbedo {
@@ -78,8 +79,8 @@ struct IncidentAlbedo {
 };
 
 // The directional albedos at incident directions all over the hemisphere, in parallel. Additions
-// follow: the local maxima over theta_i that may be above grid.refine_above, which mostly lie
-// between the directions of the grid, and the last angle.
+// follow: the largest of the local maxima over theta_i, which mostly lie between the directions of
+// the grid, and the last angle.
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid);
 
 }  // namespace pbnbrdf
