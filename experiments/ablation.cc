@@ -322,7 +322,9 @@ class Ablation {
         ". Medians are over materials, of each the median of its seeds; worst: of all fits. For "
         "energy, materials that aren't built in are scaled to a largest directional albedo of ",
         FLAGS_scale_to_albedo, ", and built-in ones as they are if theirs is at least ",
-        kLowDissipation, "; for all terms, they come both as they are and scaled. Failed fits: ", failures_.size(), ".\n\n");
+        kLowDissipation,
+        "; for all terms, they come both as they are and scaled. Failed fits: ", failures_.size(),
+        ".\n\n");
     for (const std::string& failure : failures_) text += "- " + failure + "\n";
     return text + (failures_.empty() ? "" : "\n");
   }

@@ -111,9 +111,8 @@ double Worst(const Records& records, std::string_view measure) {
 
 // Of all materials, those with a fit that makes energy.
 std::string CountAmplifying(const Records& records) {
-  const Records amplifying = Select(records, [](const AblationRecord& r) {
-    return !r.energy.Conserved();
-  });
+  const Records amplifying =
+      Select(records, [](const AblationRecord& r) { return !r.energy.Conserved(); });
   return StrCat(Materials(amplifying).size(), " of ", Materials(records).size());
 }
 
@@ -190,13 +189,14 @@ double MedianRatio(const Records& records, const std::string& from, const std::s
 }
 
 std::string AllTermsMarkdown(const Records& records) {
-  std::string text = StrCat("## All terms together (problems/pbnbrdf.flags)\n\n",
-                            SetUpTable(records,
-                                       {{"largest directional albedo", "max_directional_albedo", 1.0, 8},
-                                        {"HRL", "hrl"},
-                                        {"HCL", "hcl"},
-                                        {"mean abs log error", "mean_abs_log_error"}},
-                                       "materials with an albedo > 1 + 1e-6"));
+  std::string text =
+      StrCat("## All terms together (problems/pbnbrdf.flags)\n\n",
+             SetUpTable(records,
+                        {{"largest directional albedo", "max_directional_albedo", 1.0, 8},
+                         {"HRL", "hrl"},
+                         {"HCL", "hcl"},
+                         {"mean abs log error", "mean_abs_log_error"}},
+                        "materials with an albedo > 1 + 1e-6"));
   const std::vector<std::string> set_ups = SetUps(records);
   if (set_ups.size() < 3) return text;
   return text + StrCat("\nMedian over materials of the ratio of errors, with the energy term to ",

@@ -182,7 +182,8 @@ void BM_EvaluateJacobian(benchmark::State& state) {
   ceres::Problem problem;
   std::unique_ptr<Objective> objective;
   if (state.range(1)) {
-    AddAutodiff(fixture.problem, fixture.samples, EqualStrata(fixture.problem), fixture.weights.data(), &problem);
+    AddAutodiff(fixture.problem, fixture.samples, EqualStrata(fixture.problem),
+                fixture.weights.data(), &problem);
   } else {
     objective = MakeObjective(fixture.problem, fixture.samples);
     AddCondensed(objective.get(), fixture.weights.data(), &problem);

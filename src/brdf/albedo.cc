@@ -61,7 +61,7 @@ double LargestDifference(const Rgb& a, const Rgb& b) {
 // An albedo as far as it is known.
 struct Estimate {
   Rgb albedo;
-  double error;     // about
+  double error;           // about
   std::size_t level = 0;  // of refinement
 };
 
@@ -148,8 +148,7 @@ Rgb LargestByChannel(const Albedos& albedos) {
 }
 
 // The albedos at all directions of a profile; those that may be the largest ones with all care.
-void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid,
-          std::span<IncidentAlbedo> profile) {
+void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid, std::span<IncidentAlbedo> profile) {
   std::vector<Estimate> estimates(profile.size());
   const auto wi = [&](std::size_t n) {
     return FromSpherical(profile[n].theta_i, profile[n].phi_i);
@@ -226,8 +225,8 @@ std::vector<AlbedoNode> AlbedoQuadrature::Nodes(const Vec3& wi) const {
         const double cos_d = Dot(wi, h);
         const Vec3 wo = 2.0 * cos_d * h - wi;
         if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
-        const double solid_angle_h = sin_h * (last - first) * power * below *
-                                     x_.weights[t] * phi_weights_[p];
+        const double solid_angle_h =
+            sin_h * (last - first) * power * below * x_.weights[t] * phi_weights_[p];
         nodes.push_back({{wi, wo}, wo.z * 4.0 * cos_d * solid_angle_h});
       }
     }
@@ -267,8 +266,8 @@ std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& gr
   const Rgb largest = LargestByChannel(profile);
   std::vector<IncidentAlbedo> additions;
   for (int row = 0; row < azimuths; ++row) {
-    const auto of_row = std::span(profile).subspan(
-        static_cast<std::size_t>(row) * grid.angles, grid.angles);
+    const auto of_row =
+        std::span(profile).subspan(static_cast<std::size_t>(row) * grid.angles, grid.angles);
     for (double theta_i : MoreAngles(of_row, largest, grid)) {
       additions.push_back({theta_i, of_row[0].phi_i, 0.0, {}});
     }

@@ -20,8 +20,9 @@ DEFINE_string(terms, "log,energy",
               "terms of the cost: log (eq. 6), chromaticity (eq. 7), energy (eq. 5)");
 DEFINE_double(log_weight, 1.0, "weight of the log term");
 DEFINE_double(chromaticity_weight, 0.1, "weight of the chromaticity term");
-DEFINE_double(energy_weight, 1.0,
-              "weight of the energy term, at most to begin with: it grows until energy is conserved");
+DEFINE_double(
+    energy_weight, 1.0,
+    "weight of the energy term, at most to begin with: it grows until energy is conserved");
 DEFINE_bool(certify_energy, true,
             "end with no directional albedo above 1, lowering the whole network if need be");
 DEFINE_int32(energy_strata, 16, "theta_i of the energy term, to begin with");
@@ -134,7 +135,8 @@ std::vector<FlagGroup> ProblemFlags() {
   return {{"The network", {"encoding", "hidden", "activation", "initialization", "precision"}},
           {"The terms",
            {"terms", "log_weight", "chromaticity_weight", "energy_weight", "energy_strata",
-            "energy_azimuths", "energy_theta", "energy_phi", "energy_skip", "certify_energy", "loss", "loss_scale"}},
+            "energy_azimuths", "energy_theta", "energy_phi", "energy_skip", "certify_energy",
+            "loss", "loss_scale"}},
           {"The samples", {"sampling", "samples", "first_samples", "growth", "seed"}},
           {"The solver",
            {"solver", "jacobian", "init", "starts", "curvature_samples", "max_iterations",

@@ -93,7 +93,8 @@ void EnergyTerm<T>::Linearize(const T* weights, Linearization* at) {
     const Stratum& stratum = *active[row / kChannels];
     const double excess = std::max(0.0, stratum.excess[row % kChannels]);
     if (row % kChannels == 0) at->cost += CostOf(stratum);
-    const double scale = excess > 0.0 ? (absolute_ ? stratum.weight : std::sqrt(stratum.weight)) : 0.0;
+    const double scale =
+        excess > 0.0 ? (absolute_ ? stratum.weight : std::sqrt(stratum.weight)) : 0.0;
     residuals[row] = absolute_ ? 1.0 : scale * excess;
     jacobian.row(row) *= scale;
   }

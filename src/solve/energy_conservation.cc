@@ -61,9 +61,10 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
 
 void EnergyConstraints::Exchange() {
   for (int c = 0; c < 3; ++c) {
-    const auto largest = std::max_element(
-        profile_.begin(), profile_.end(),
-        [c](const IncidentAlbedo& a, const IncidentAlbedo& b) { return a.albedo[c] < b.albedo[c]; });
+    const auto largest = std::max_element(profile_.begin(), profile_.end(),
+                                          [c](const IncidentAlbedo& a, const IncidentAlbedo& b) {
+                                            return a.albedo[c] < b.albedo[c];
+                                          });
     AddStratum(*largest);
   }
   for (std::size_t k = 0; k < profile_.size(); ++k) {

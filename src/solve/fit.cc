@@ -38,8 +38,8 @@ constexpr int kLbfgsPace = 10;  // its iterations to one of Levenberg-Marquardt
 // Of the stages with the energy term.
 constexpr int kMostEnergyRounds = 24, kRoundIterations = 40;
 constexpr double kSmallCorrection = 0.05;   // of the mean absolute log error
-constexpr double kClearlyConserved = 0.99;   // a largest albedo that needs no finer check
-constexpr double kLeastCost = 1e-7;          // of the other terms, for the weight of this one
+constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
+constexpr double kLeastCost = 1e-7;         // of the other terms, for the weight of this one
 constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
 constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
 

@@ -17,9 +17,9 @@ constexpr double kRoundingSpread = 1e-6;
 
 enum class StartQuality {
   kGood,
-  kConstant,   // the material isn't constant, but the network is and stays so, since no weight of its
-               // first layer has a gradient, as with a layer of dead units
-  kStuck,      // no weight at all has a gradient, and the cost isn't 0
+  kConstant,  // the material isn't constant, but the network is and stays so, since no weight of its
+              // first layer has a gradient, as with a layer of dead units
+  kStuck,     // no weight at all has a gradient, and the cost isn't 0
   kNotFinite,  // the cost or its gradient isn't finite
 };
 

@@ -79,8 +79,7 @@ TEST(AlbedoQuadrature, With64x32NodesIsWithin3e4OfAnAdaptiveIntegral) {
     for (double degrees : {0.0, 45.0, 80.0, 88.0, 89.5}) {
       const double theta_i = degrees * kDegree;
       const double exact = AdaptiveAlbedo(*lobe.brdf, lobe.width, theta_i);
-      const double albedo =
-          DirectionalAlbedo(*lobe.brdf, FromSpherical(theta_i, 0.0), 64, 32)[0];
+      const double albedo = DirectionalAlbedo(*lobe.brdf, FromSpherical(theta_i, 0.0), 64, 32)[0];
       EXPECT_NEAR(albedo, exact, 3e-4 * exact)
           << lobe.name << " " << lobe.width << " at " << degrees;
       worst = std::max(worst, std::abs(albedo / exact - 1.0));

@@ -63,7 +63,8 @@ TEST(Builtin, ConserveEnergy) {
       for (double phi : {0.0, 0.5, 1.0, kPi / 2}) {
         if (brdf->IsIsotropic() && phi > 0.0) break;
         const TurnedBrdf turned(*brdf, phi);
-        for (double albedo : DirectionalAlbedo(turned, FromSpherical(degrees * kPi / 180, 0.0), 512, 128)) {
+        for (double albedo :
+             DirectionalAlbedo(turned, FromSpherical(degrees * kPi / 180, 0.0), 512, 128)) {
           EXPECT_LT(albedo, 1.001) << material.name << " at " << degrees << ", " << phi;
           EXPECT_GT(albedo, 0.01) << material.name << " at " << degrees << ", " << phi;
         }
@@ -179,8 +180,10 @@ TEST(LobeWidths, NearlyEqualOnesGiveNearlyTheIsotropicValues) {
 TEST(LobeWidths, TheLobesReflectAllThatComesStraightDown) {
   // Narrow ones, of which next to nothing is shadowed; rho_s = f0 = 1: the distribution's integral.
   const Rgb white = {1.0, 1.0, 1.0};
-  EXPECT_NEAR(DirectionalAlbedo(WardBrdf({}, white, {0.005, 0.02}), {0.0, 0.0, 1.0}, 512, 512)[0], 1.0, 1e-3);
-  EXPECT_NEAR(DirectionalAlbedo(GgxBrdf(white, {0.002, 0.008}), {0.0, 0.0, 1.0}, 1024, 512)[0], 1.0, 1e-3);
+  EXPECT_NEAR(DirectionalAlbedo(WardBrdf({}, white, {0.005, 0.02}), {0.0, 0.0, 1.0}, 512, 512)[0],
+              1.0, 1e-3);
+  EXPECT_NEAR(DirectionalAlbedo(GgxBrdf(white, {0.002, 0.008}), {0.0, 0.0, 1.0}, 1024, 512)[0], 1.0,
+              1e-3);
 }
 
 TEST(LobeWidths, DescriptionsNameBoth) {

@@ -24,7 +24,8 @@ Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
 double LargestBetween(const Brdf& brdf) {
   double largest = 0.0;
   for (double degrees = 0.5; degrees < 85.0; degrees += 3.0) {
-    for (double a : DirectionalAlbedo(brdf, FromSpherical(degrees * kPi / 180, 0.0))) largest = std::max(largest, a);
+    for (double a : DirectionalAlbedo(brdf, FromSpherical(degrees * kPi / 180, 0.0)))
+      largest = std::max(largest, a);
   }
   return largest;
 }

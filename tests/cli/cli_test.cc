@@ -259,7 +259,8 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
 
 TEST_F(Cli, EvalSaysWhereEnergyIsMade) {
   const std::string material = " --material=builtin:spectralon --scale_to_albedo=1.5 ";
-  ASSERT_EQ(Run("fit --terms=log" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
+  ASSERT_EQ(Run("fit --terms=log" + material + kQuick + "--out=" + Path("a.safetensors")).status,
+            0);
   const std::string eval = "eval --json --eval_samples=2000 --fit=" + Path("a.safetensors");
   const json measures = json::parse(Run(eval + material).out);
   EXPECT_THAT(std::string(measures["energy"]), testing::StartsWith("albedo 1 + 0."));

@@ -43,8 +43,8 @@ TEST(Compare, MeasuresTheWholeFitIfItEndsFirst) {
 }
 
 TEST(Compare, TakesTheTraceWhereTheFitGoesOn) {
-  const Versus versus =
-      Compare(Record("gold", 1, {{0.5, 0.02}, {2.0, 0.001}}, 0.0011), {1.0, 0.0001, 0.0001, {}, {}});
+  const Versus versus = Compare(Record("gold", 1, {{0.5, 0.02}, {2.0, 0.001}}, 0.0011),
+                                {1.0, 0.0001, 0.0001, {}, {}});
   EXPECT_EQ(versus.seconds_to_error, INFINITY);
   EXPECT_EQ(versus.times_as_fast, 0.0);
   EXPECT_EQ(versus.error_then, 0.02);
@@ -55,7 +55,8 @@ TEST(ComparisonMarkdown, HasMediansOfSeedsAndTheWorstFit) {
   const std::vector<FitRecord> fits = {
       Record("gold", 1, {{1.0, 0.01}}, 0.01), Record("gold", 2, {{2.0, 0.01}}, 0.01),
       Record("gold", 3, {{4.0, 0.01}}, 0.01), Record("tin", 1, {{4.0, 0.005}}, 0.005)};
-  const PeerRecords peers = {{"gold", {8.0, 0.01, 0.01, {}, {}}}, {"tin", {8.0, 0.01, 0.01, {}, {}}}};
+  const PeerRecords peers = {{"gold", {8.0, 0.01, 0.01, {}, {}}},
+                             {"tin", {8.0, 0.01, 0.01, {}, {}}}};
   const std::string text = ComparisonMarkdown(fits, peers);
   EXPECT_THAT(text, HasSubstr("### tiny_lm, 21-21 hidden units"));
   EXPECT_THAT(text, testing::ContainsRegex("gold +\\|.*\\| +4.00 \\| +0.0100 \\| +1.00 \\|"));

@@ -54,7 +54,7 @@ struct FitOptions {
   // With the energy term: to end with no directional albedo above 1, by lowering the whole network
   // if the term didn't get there. The published scripts don't.
   bool certify_energy = true;
-  int threads = 0;                   // 0: as many as the machine has
+  int threads = 0;  // 0: as many as the machine has
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
 };
