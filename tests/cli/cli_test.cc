@@ -54,7 +54,7 @@ class Cli : public testing::Test {
   std::string Path(const std::string& name) const { return folder_ / name; }
 
   // Flags of a fit that takes a moment.
-  const std::string kQuick = " --samples=500 --max_iterations=4 --hidden=5 ";
+  const std::string kQuick = " --samples=500 --max_iterations=4 --hidden=5 --terms=log ";
 
   TemporaryFolder folder_;
 };
@@ -251,7 +251,6 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
                         "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
-  EXPECT_EQ(measures["energy"], "certified");
   const Result text = Run("eval --eval_samples=2000 --fit=" + Path("a.safetensors") + material);
   EXPECT_THAT(text.out, HasSubstr("Helmholtz reciprocity loss (eq. 8)"));
   for (const std::string& key : keys) EXPECT_THAT(text.out, HasSubstr(key + " "));
@@ -259,13 +258,14 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
 
 TEST_F(Cli, EvalSaysWhereEnergyIsMade) {
   const std::string material = " --material=builtin:spectralon --scale_to_albedo=1.5 ";
-  ASSERT_EQ(Run("fit --terms=log" + material + kQuick + "--out=" + Path("a.safetensors")).status,
-            0);
+  ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
   const std::string eval = "eval --json --eval_samples=2000 --fit=" + Path("a.safetensors");
   const json measures = json::parse(Run(eval + material).out);
   EXPECT_THAT(std::string(measures["energy"]), testing::StartsWith("albedo 1 + 0."));
   EXPECT_THAT(std::string(measures["material_energy"]), testing::StartsWith("albedo 1 + 0.5 at "));
-  ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("b.safetensors")).status, 0);
+  ASSERT_EQ(
+      Run("fit" + material + kQuick + "--terms=log,energy --out=" + Path("b.safetensors")).status,
+      0);
   const std::string eval_b = "eval --json --eval_samples=2000 --fit=" + Path("b.safetensors");
   EXPECT_EQ(json::parse(Run(eval_b + material).out)["energy"], "certified");
 }
