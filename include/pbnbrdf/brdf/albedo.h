@@ -34,8 +34,8 @@ class AlbedoQuadrature {
   AlbedoQuadrature(int n_theta, int n_phi);
 
   // theta_h in the cells between the rows of a MERL table, n_theta >= 1 nodes in each. Tables and
-  // networks with the merl encoding have kinks at the rows: at grazing incidence other rules with as
-  // many nodes are off by 1e-4, this one with 3 x 96 by 1e-6.
+  // networks with the merl encoding have kinks at the rows, over which other rules converge slowly.
+  // What may be left are narrow ridges over phi_h, at grazing incidence.
   static AlbedoQuadrature OnMerlRows(int n_theta, int n_phi);
 
   // wi: of unit length, above the horizon. The nodes are above it, too.
