@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kHorizon = 0.5 * kPi - 1e-9;  // nearly
+constexpr int kMaximaSteps = 3;                // of successive parabolic interpolation
 
 // P_n(x) and its derivative, by the three-term recurrence.
 struct Legendre {
@@ -42,16 +43,18 @@ IncidentStratum StratumOf(const AlbedoGrid& grid, int k) {
 
 double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
 
-// Where the parabola through three neighbours has its vertex, if the middle one is the largest.
-// Returns whether it has.
+// Where the parabola through three neighbours has its vertex, if the middle one is the largest and
+// the vertex is elsewhere. Returns whether so.
 bool Vertex(const IncidentAlbedo* middle, int channel, double* theta_i) {
+  constexpr double kElsewhere = 1e-3;
   const double x0 = middle[-1].theta_i - middle[0].theta_i;
   const double x1 = middle[1].theta_i - middle[0].theta_i;
   const double y0 = middle[-1].albedo[channel] - middle[0].albedo[channel];
   const double y1 = middle[1].albedo[channel] - middle[0].albedo[channel];
   if (!(y0 < 0.0) || !(y1 < 0.0)) return false;
-  *theta_i = middle[0].theta_i + 0.5 * (y0 * x1 * x1 - y1 * x0 * x0) / (y0 * x1 - y1 * x0);
-  return true;
+  const double step = 0.5 * (y0 * x1 * x1 - y1 * x0 * x0) / (y0 * x1 - y1 * x0);
+  *theta_i = middle[0].theta_i + step;
+  return std::abs(step) > kElsewhere * (x1 - x0);
 }
 
 double LargestDifference(const Rgb& a, const Rgb& b) {
@@ -121,20 +124,36 @@ class RefinedAlbedo {
   std::vector<AlbedoQuadrature> levels_;
 };
 
-// The theta_i that may lie between those of a row of the same phi_i, or behind its end: the local
-// maxima that come near the largest albedos, and the last angle.
-std::vector<double> MoreAngles(std::span<const IncidentAlbedo> row, const Rgb& largest,
-                               const AlbedoGrid& grid) {
+// The theta_i, between those of a row of the same phi_i, of the local maxima that come near the
+// largest albedos.
+std::vector<double> Maxima(std::span<const IncidentAlbedo> row, const Rgb& largest,
+                           const AlbedoGrid& grid) {
   constexpr double kNear = 0.98;
-  std::vector<double> angles = {std::min(grid.last_angle, kHorizon)};
+  std::vector<double> angles;
   for (std::size_t k = 1; k + 1 < row.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
       const bool is_near = row[k].albedo[c] > kNear * std::max(largest[c], grid.refine_above);
       double theta_i;
-      if (is_near && Vertex(&row[k], c, &theta_i)) angles.push_back(theta_i);
+      if (!is_near || !Vertex(&row[k], c, &theta_i)) continue;
+      const bool is_known = std::find(angles.begin(), angles.end(), theta_i) != angles.end();
+      if (!is_known) angles.push_back(theta_i);  // of a grey material, by its first channel
     }
   }
   return angles;
+}
+
+// The grid's own directions and, at the end of each row, the last angle.
+std::vector<IncidentAlbedo> GridDirections(const AlbedoGrid& grid, int azimuths) {
+  std::vector<IncidentAlbedo> directions;
+  for (int row = 0; row < azimuths; ++row) {
+    const double phi_i = 2.0 * kPi * row / azimuths;
+    for (int k = 0; k < grid.angles; ++k) {
+      const auto [theta_i, solid_angle] = StratumOf(grid, k);
+      directions.push_back({theta_i, phi_i, solid_angle / azimuths, {}});
+    }
+    directions.push_back({std::min(grid.last_angle, kHorizon), phi_i, 0.0, {}});
+  }
+  return directions;
 }
 
 // Of Estimates or IncidentAlbedos.
@@ -145,6 +164,23 @@ Rgb LargestByChannel(const Albedos& albedos) {
     for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], at.albedo[c]);
   }
   return largest;
+}
+
+// The directions of local maxima, albedos not yet known. profile: sorted by phi_i, then theta_i.
+std::vector<IncidentAlbedo> MaximaBetween(const std::vector<IncidentAlbedo>& profile,
+                                          const AlbedoGrid& grid) {
+  const Rgb largest = LargestByChannel(profile);
+  std::vector<IncidentAlbedo> maxima;
+  for (auto row = profile.begin(); row != profile.end();) {
+    const double phi_i = row->phi_i;
+    const auto end =
+        std::find_if(row, profile.end(), [phi_i](const auto& at) { return at.phi_i != phi_i; });
+    for (double theta_i : Maxima({row, end}, largest, grid)) {
+      maxima.push_back({theta_i, phi_i, 0.0, {}});
+    }
+    row = end;
+  }
+  return maxima;
 }
 
 // The albedos at all directions of a profile; those that may be the largest ones with all care.
@@ -180,7 +216,8 @@ GaussLegendre::GaussLegendre(int n) : nodes(n), weights(n) {
   }
 }
 
-AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi) : x_(n_theta) {
+AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi)
+    : x_(n_theta), x_of_first_rows_(2 * n_theta) {
   const auto add_half = [&](double first, int n) {
     const GaussLegendre rule(n);
     for (int k = 0; k < n; ++k) {
@@ -200,11 +237,12 @@ AlbedoQuadrature AlbedoQuadrature::OnMerlRows(int n_theta, int n_phi) {
 }
 
 std::vector<AlbedoQuadrature::Cell> AlbedoQuadrature::Cells(double theta_max) const {
-  if (!on_merl_rows_) return {{0.0, theta_max, 3}};
+  if (!on_merl_rows_) return {{0.0, theta_max, 3, &x_}};
   std::vector<Cell> cells;
   for (int row = 0; row < MerlBrdf::kThetaH; ++row) {
     const double first = MerlBrdf::RowAngle(row), last = MerlBrdf::RowAngle(row + 1);
-    if (first < theta_max) cells.push_back({first, std::min(last, theta_max), 1});
+    const GaussLegendre* rule = row < kFirstRows ? &x_of_first_rows_ : &x_;
+    if (first < theta_max) cells.push_back({first, std::min(last, theta_max), 1, rule});
   }
   return cells;
 }
@@ -216,9 +254,9 @@ std::vector<AlbedoNode> AlbedoQuadrature::Nodes(const Vec3& wi) const {
     // cos_o = 2 (wi.h) h.z - wi.z = |.| cos(2 theta_h - psi) reaches 0 at theta_max.
     const double psi = std::atan2(sin_i * std::cos(phi_[p]), wi.z);
     const Vec3 tilt = FromSpherical(0.5 * kPi, phi_i + phi_[p]);
-    for (const auto& [first, last, power] : Cells(0.25 * kPi + 0.5 * psi)) {
-      for (std::size_t t = 0; t < x_.nodes.size(); ++t) {
-        const double x = x_.nodes[t], below = power == 1 ? 1.0 : x * x;
+    for (const auto& [first, last, power, rule] : Cells(0.25 * kPi + 0.5 * psi)) {
+      for (std::size_t t = 0; t < rule->nodes.size(); ++t) {
+        const double x = rule->nodes[t], below = power == 1 ? 1.0 : x * x;
         const double theta_h = first + (last - first) * below * x;
         const double sin_h = std::sin(theta_h);
         const Vec3 h = {sin_h * tilt.x, sin_h * tilt.y, std::cos(theta_h)};
@@ -226,7 +264,7 @@ std::vector<AlbedoNode> AlbedoQuadrature::Nodes(const Vec3& wi) const {
         const Vec3 wo = 2.0 * cos_d * h - wi;
         if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
         const double solid_angle_h =
-            sin_h * (last - first) * power * below * x_.weights[t] * phi_weights_[p];
+            sin_h * (last - first) * power * below * rule->weights[t] * phi_weights_[p];
         nodes.push_back({{wi, wo}, wo.z * 4.0 * cos_d * solid_angle_h});
       }
     }
@@ -254,27 +292,20 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta, int n_phi) 
 
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid) {
   const RefinedAlbedo refined(brdf, grid);
-  const int azimuths = brdf.IsIsotropic() ? 1 : grid.azimuths;
-  std::vector<IncidentAlbedo> profile;
-  for (int row = 0; row < azimuths; ++row) {
-    for (int k = 0; k < grid.angles; ++k) {
-      const auto [theta_i, solid_angle] = StratumOf(grid, k);
-      profile.push_back({theta_i, 2.0 * kPi * row / azimuths, solid_angle / azimuths, {}});
-    }
-  }
+  std::vector<IncidentAlbedo> profile =
+      GridDirections(grid, brdf.IsIsotropic() ? 1 : grid.azimuths);
   Fill(refined, grid, profile);
-  const Rgb largest = LargestByChannel(profile);
-  std::vector<IncidentAlbedo> additions;
-  for (int row = 0; row < azimuths; ++row) {
-    const auto of_row =
-        std::span(profile).subspan(static_cast<std::size_t>(row) * grid.angles, grid.angles);
-    for (double theta_i : MoreAngles(of_row, largest, grid)) {
-      additions.push_back({theta_i, of_row[0].phi_i, 0.0, {}});
-    }
+  for (int k = 0; k < kMaximaSteps; ++k) {
+    std::vector<IncidentAlbedo> maxima = MaximaBetween(profile, grid);
+    Fill(refined, grid, maxima);
+    profile.insert(profile.end(), maxima.begin(), maxima.end());
+    std::sort(profile.begin(), profile.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.phi_i, a.theta_i) < std::pair(b.phi_i, b.theta_i);
+    });
   }
-  Fill(refined, grid, additions);
-  profile.insert(profile.end(), additions.begin(), additions.end());
   return profile;
 }
+
+Rgb LargestAlbedos(const std::vector<IncidentAlbedo>& profile) { return LargestByChannel(profile); }
 
 }  // namespace pbnbrdf

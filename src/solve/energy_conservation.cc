@@ -21,16 +21,8 @@ constexpr int kStratumSpacing = 3;       // of the grid's directions that become
 constexpr double kLeastStep = 1e-7;      // of a correction
 constexpr int kMostCorrections = 100;
 
-Rgb LargestByChannel(const std::vector<IncidentAlbedo>& profile) {
-  Rgb largest = {};
-  for (const IncidentAlbedo& at : profile) {
-    for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], at.albedo[c]);
-  }
-  return largest;
-}
-
 Rgb MeasureLargest(const NetworkShape& shape, const std::vector<double>& weights) {
-  return LargestByChannel(AlbedoProfile(NeuralBrdf(shape, weights), kLastGrid));
+  return LargestAlbedos(AlbedoProfile(NeuralBrdf(shape, weights), kLastGrid));
 }
 
 bool IsAnyAbove(const Rgb& albedo, double bound) {
@@ -55,7 +47,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
     for (int c = 0; c < 3; ++c) stratum.limit[c] = kMostAlbedo - (exact[c] - own[c]);
   });
-  const Rgb largest = LargestByChannel(profile_);
+  const Rgb largest = LargestAlbedos(profile_);
   return std::max({largest[0], largest[1], largest[2]});
 }
 

@@ -33,9 +33,9 @@ class AlbedoQuadrature {
   // n_theta >= 1, n_phi >= 2
   AlbedoQuadrature(int n_theta, int n_phi);
 
-  // theta_h in the cells between the rows of a MERL table, n_theta >= 1 nodes in each. Tables and
-  // networks with the merl encoding have kinks at the rows, over which other rules converge slowly.
-  // What may be left are narrow ridges over phi_h, at grazing incidence.
+  // theta_h in the cells between the rows of a MERL table, n_theta >= 1 nodes in each, twice as many
+  // in the first ones. Tables and networks with the merl encoding have kinks at the rows, over which
+  // other rules converge slowly. What may be left are narrow ridges over phi_h, at grazing incidence.
   static AlbedoQuadrature OnMerlRows(int n_theta, int n_phi);
 
   // wi: of unit length, above the horizon. The nodes are above it, too.
@@ -46,11 +46,15 @@ class AlbedoQuadrature {
   struct Cell {
     double first, last;
     int power;
+    const GaussLegendre* rule;
   };
+
+  // At grazing incidence the integrand changes within a few of the first rows' widths.
+  static constexpr int kFirstRows = 12;
 
   std::vector<Cell> Cells(double theta_max) const;
 
-  GaussLegendre x_;  // in each cell
+  GaussLegendre x_, x_of_first_rows_;
   bool on_merl_rows_ = false;
   std::vector<double> phi_, phi_weights_;  // phi_h from the plane of incidence on, radians
 };
@@ -74,13 +78,16 @@ struct AlbedoGrid {
 
 struct IncidentAlbedo {
   double theta_i, phi_i;  // radians
-  double solid_angle;     // that it stands for, sr; 0: one of the additions
+  double solid_angle;     // that it stands for, sr; 0: not of the grid, added
   Rgb albedo;
 };
 
-// The directional albedos at incident directions all over the hemisphere, in parallel. Additions
-// follow: the largest of the local maxima over theta_i, which mostly lie between the directions of
-// the grid, and the last angle.
+// The directional albedos at incident directions all over the hemisphere, in parallel, sorted by
+// phi_i and then theta_i. Added to the grid are the largest of the local maxima over theta_i, which
+// mostly lie between its directions, and the last angle.
 std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& grid);
+
+// The largest of each channel, at least 0.
+Rgb LargestAlbedos(const std::vector<IncidentAlbedo>& profile);
 
 }  // namespace pbnbrdf
