@@ -85,7 +85,7 @@ experiments() {
   case ${1:-} in
     ablation | jacobian_cost | scaling | solver_comparison | stability) ;;
     *)
-      echo "usage: ./do experiments ablation | jacobian_cost | scaling | solver_comparison | stability [--help | ARGUMENT ...]" >&2
+      echo "usage: ./do experiments ablation | collection | jacobian_cost | scaling | solver_comparison | stability [--help | ARGUMENT ...]" >&2
       exit 2
       ;;
   esac

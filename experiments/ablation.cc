@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <mutex>
 
 #include "ablation_tables.h"
 #include "comparison.h"
@@ -31,6 +32,7 @@ DEFINE_int32(max_iterations, pbnbrdf::FitOptions{}.max_iterations, "of each fit"
 DEFINE_uint64(samples, pbnbrdf::FitProblem{}.samples, "most training samples");
 DEFINE_double(max_seconds, 60.0, "of each fit");
 DEFINE_int32(threads, 0, "of each fit; 0: one for each core");
+DEFINE_int32(jobs, 1, "materials at a time");
 DEFINE_uint64(heldout_samples, 200000, "held-out samples of a fit's errors");
 
 namespace pbnbrdf {
@@ -41,7 +43,7 @@ constexpr char kUsage[] =
 
   ablation --out_dir=results --sgd=parameters.csv
   ablation --out_dir=results --materials=builtin:satin-gold,metal=gold.binary --tables=1,3
-  ablation --out_dir=results --sgd=parameters.csv merl/*.binary
+  ablation --out_dir=results --sgd=parameters.csv --jobs=2 --threads=1 merl/*.binary
 
 The arguments are further materials. Table 1 compares encodings, table 2 fits of materials that
 reflect next to all light with and without the energy term, table 3 weights of the chromaticity
@@ -203,6 +205,7 @@ Plan MakePlan(const std::vector<std::string>& arguments) {
     }
   }
   if (FLAGS_heldout_samples < 1) Fail("heldout_samples = 0; must be >= 1");
+  if (FLAGS_jobs < 1) Fail("jobs = ", FLAGS_jobs, "; must be >= 1");
   if (!(FLAGS_scale_to_albedo > 0.0)) {
     Fail("scale_to_albedo = ", FLAGS_scale_to_albedo, "; must be > 0");
   }
@@ -235,80 +238,94 @@ std::vector<Variant> Variants(std::size_t table, const MaterialSource& material)
 class Ablation {
  public:
   explicit Ablation(const Plan& plan)
-      : plan_(plan), csv_path_(OutputPath("ablation.csv")), csv_(csv_path_) {
+      : plan_(plan),
+        csv_path_(OutputPath("ablation.csv")),
+        csv_(csv_path_),
+        records_(plan.materials.size()) {
     csv_ << CsvLine(AblationCsvHeader()) << std::flush;
   }
 
-  void RunMaterial(const MaterialSource& material) {
+  // Of the plan's materials.
+  void RunMaterial(std::size_t index) {
+    const MaterialSource& material = plan_.materials[index];
     for (std::size_t table : plan_.tables) {
       try {
-        for (const Variant& variant : Variants(table, material)) {
-          RunTable(table, variant, material.material_class);
-        }
+        for (const Variant& variant : Variants(table, material)) RunTable(table, variant, index);
       } catch (const Error& error) {
         NoteFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
       }
     }
   }
 
-  void Report() const { WriteReport("ablation", Preface() + AblationMarkdown(records_)); }
+  void Report() const {
+    std::vector<AblationRecord> all;
+    for (const auto& of_material : records_) {
+      all.insert(all.end(), of_material.begin(), of_material.end());
+    }
+    WriteReport("ablation", Preface() + AblationMarkdown(all));
+  }
 
  private:
-  void RunTable(std::size_t table, const Variant& variant, const std::string& material_class) {
+  void RunTable(std::size_t table, const Variant& variant, std::size_t index) {
     AblationRecord record;
     record.table = static_cast<int>(table);
     record.material = variant.name;
-    record.material_class = material_class;
+    record.material_class = plan_.materials[index].material_class;
     if (table == 2 || table == 4) {
       record.set_up = kMaterialItself;
       record.energy = MeasureEnergy(*variant.brdf);
-      Keep(record);
+      Keep(record, index);
     }
     for (const SetUp& set_up : SetUps(table, plan_.base)) {
       for (std::size_t seed : plan_.seeds) {
         record.set_up = set_up.name;
         record.seed = seed;
-        RunFit(*variant.brdf, set_up.problem, record);
+        if (RunFit(*variant.brdf, set_up.problem, &record)) Keep(record, index);
       }
     }
   }
 
-  // record: names the fit.
-  void RunFit(const Brdf& material, FitProblem problem, AblationRecord record) {
-    const std::string what = StrCat("table ", record.table, ", ", record.material, ", ",
-                                    record.set_up, ", seed ", record.seed, ": ");
+  // record: names the fit and takes its measures. Returns whether there are any.
+  bool RunFit(const Brdf& material, FitProblem problem, AblationRecord* record) {
+    const std::string what = StrCat("table ", record->table, ", ", record->material, ", ",
+                                    record->set_up, ", seed ", record->seed, ": ");
     problem.samples = FLAGS_samples;
-    problem.seed = record.seed;
+    problem.seed = record->seed;
     if (!material.IsIsotropic()) problem.encoding = EncodingFor(material);
     try {
-      const Fit fit = FitBrdf(material, problem, plan_.options);
-      record.iterations = fit.summary.iterations;
-      record.seconds = fit.summary.seconds;
-      record.errors = MeasureErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
-      record.colors = MeasureColorErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
-      record.reciprocity = MeasureReciprocity(fit.network);
-      record.energy = MeasureEnergy(fit.network);
+      Measure(material, FitBrdf(material, problem, plan_.options), record);
     } catch (const Error& error) {
       NoteFailure(what + error.what());
-      return;
+      return false;
     }
-    if (!IsFinite(record)) {
+    if (!IsFinite(*record)) {
       NoteFailure(what + "a measure isn't finite");
-      return;
+      return false;
     }
-    std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record.errors.mean_abs_log_error,
-                 record.seconds);
-    Keep(record);
+    std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record->errors.mean_abs_log_error,
+                 record->seconds);
+    return true;
+  }
+
+  static void Measure(const Brdf& material, const Fit& fit, AblationRecord* record) {
+    record->iterations = fit.summary.iterations;
+    record->seconds = fit.summary.seconds;
+    record->errors = MeasureErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
+    record->colors = MeasureColorErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
+    record->reciprocity = MeasureReciprocity(fit.network);
+    record->energy = MeasureEnergy(fit.network);
   }
 
   // At once, so that a long run that is stopped has left its rows.
-  void Keep(const AblationRecord& record) {
+  void Keep(const AblationRecord& record, std::size_t index) {
+    const std::scoped_lock lock(mutex_);
     csv_ << CsvLine(AblationCsvRow(record));
     if (!csv_.flush()) Fail(csv_path_, ": can't be written");
-    records_.push_back(record);
+    records_[index].push_back(record);
   }
 
   void NoteFailure(const std::string& failure) {
+    const std::scoped_lock lock(mutex_);
     failures_.push_back(failure);
     std::fprintf(stderr, "%s\n", failure.c_str());
   }
@@ -332,14 +349,15 @@ class Ablation {
   const Plan& plan_;
   std::string csv_path_;
   std::ofstream csv_;
-  std::vector<AblationRecord> records_;
+  std::mutex mutex_;
+  std::vector<std::vector<AblationRecord>> records_;  // of each material
   std::vector<std::string> failures_;
 };
 
 void Run(const std::vector<std::string>& arguments) {
   const Plan plan = MakePlan(arguments);
   Ablation ablation(plan);
-  for (const MaterialSource& material : plan.materials) ablation.RunMaterial(material);
+  ForEach(plan.materials.size(), FLAGS_jobs, [&](std::size_t k) { ablation.RunMaterial(k); });
   ablation.Report();
 }
 

@@ -3,6 +3,7 @@
 
 #include <gflags/gflags.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ void WriteFigure(const std::string& name, const Figure& figure);
 std::vector<std::size_t> ParseCounts(const std::string& flag, const std::string& text);  // "1e3,50"
 // Sizes of hidden layers, the networks separated by blanks: "21,21 32,32".
 std::vector<std::vector<int>> ParseNetworks(const std::string& flag, const std::string& text);
+
+// Calls `work` with each of 0 ... count - 1, some at a time in threads of their own. The first Error
+// that one throws ends all, and is thrown when they have ended.
+void ForEach(std::size_t count, int at_a_time, const std::function<void(std::size_t)>& work);
 
 // "21-21"
 std::string HiddenName(const std::vector<int>& hidden);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "pbnbrdf/brdf/merl.h"
 
@@ -43,18 +44,27 @@ IncidentStratum StratumOf(const AlbedoGrid& grid, int k) {
 
 double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
 
-// Where the parabola through three neighbours has its vertex, if the middle one is the largest and
-// the vertex is elsewhere. Returns whether so.
-bool Vertex(const IncidentAlbedo* middle, int channel, double* theta_i) {
+// The vertex of a parabola through three neighbours.
+struct Vertex {
+  double step;  // of theta_i, from the middle one
+  double gain;  // over its albedo
+};
+
+// Of those whose middle one is the largest, unless it is the vertex itself.
+std::optional<Vertex> FindVertex(const IncidentAlbedo* middle, int channel) {
   constexpr double kElsewhere = 1e-3;
   const double x0 = middle[-1].theta_i - middle[0].theta_i;
   const double x1 = middle[1].theta_i - middle[0].theta_i;
   const double y0 = middle[-1].albedo[channel] - middle[0].albedo[channel];
   const double y1 = middle[1].albedo[channel] - middle[0].albedo[channel];
-  if (!(y0 < 0.0) || !(y1 < 0.0)) return false;
-  const double step = 0.5 * (y0 * x1 * x1 - y1 * x0 * x0) / (y0 * x1 - y1 * x0);
-  *theta_i = middle[0].theta_i + step;
-  return std::abs(step) > kElsewhere * (x1 - x0);
+  if (!(y0 < 0.0) || !(y1 < 0.0)) return std::nullopt;
+  // y = b x + a x^2
+  const double determinant = x0 * x1 * (x1 - x0);
+  const double a = (y1 * x0 - y0 * x1) / determinant;
+  const double b = (y0 * x1 * x1 - y1 * x0 * x0) / determinant;
+  const Vertex vertex = {-0.5 * b / a, -0.25 * b * b / a};
+  if (std::abs(vertex.step) <= kElsewhere * (x1 - x0)) return std::nullopt;
+  return vertex;
 }
 
 double LargestDifference(const Rgb& a, const Rgb& b) {
@@ -105,7 +115,7 @@ class RefinedAlbedo {
  private:
   static constexpr int kMostTheta = 6;  // exact enough; what needs more are ridges over phi_h
   static constexpr double kCoarseError = 2e-3;  // relative
-  static constexpr double kMargin = 10.0;
+  static constexpr double kMargin = 4.0;
   static constexpr std::size_t kFirstLevels = 2;
 
   void Refine(const Vec3& wi, const Rgb& bound, std::size_t most, Estimate* estimate) const {
@@ -124,19 +134,20 @@ class RefinedAlbedo {
   std::vector<AlbedoQuadrature> levels_;
 };
 
-// The theta_i, between those of a row of the same phi_i, of the local maxima that come near the
-// largest albedos.
-std::vector<double> Maxima(std::span<const IncidentAlbedo> row, const Rgb& largest,
-                           const AlbedoGrid& grid) {
-  constexpr double kNear = 0.98;
+// The theta_i, between those of a row of the same phi_i, of the local maxima that may exceed the
+// bound.
+std::vector<double> Maxima(std::span<const IncidentAlbedo> row, const Rgb& bound) {
+  constexpr double kMostGains = 4.0, kMargin = 1e-4;  // relative
   std::vector<double> angles;
   for (std::size_t k = 1; k + 1 < row.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
-      const bool is_near = row[k].albedo[c] > kNear * std::max(largest[c], grid.refine_above);
-      double theta_i;
-      if (!is_near || !Vertex(&row[k], c, &theta_i)) continue;
+      const std::optional<Vertex> vertex = FindVertex(&row[k], c);
+      if (!vertex) continue;
+      const double most = row[k].albedo[c] + kMostGains * vertex->gain;
+      const double theta_i = row[k].theta_i + vertex->step;
       const bool is_known = std::find(angles.begin(), angles.end(), theta_i) != angles.end();
-      if (!is_known) angles.push_back(theta_i);  // of a grey material, by its first channel
+      // Known are those of grey materials, by their first channel.
+      if (most >= (1.0 - kMargin) * bound[c] && !is_known) angles.push_back(theta_i);
     }
   }
   return angles;
@@ -166,16 +177,24 @@ Rgb LargestByChannel(const Albedos& albedos) {
   return largest;
 }
 
+// Below it, albedos are of no interest.
+template <typename Albedos>
+Rgb RefinementBound(const Albedos& albedos, const AlbedoGrid& grid) {
+  Rgb bound = LargestByChannel(albedos);
+  for (double& channel : bound) channel = std::max(channel, grid.refine_above);
+  return bound;
+}
+
 // The directions of local maxima, albedos not yet known. profile: sorted by phi_i, then theta_i.
 std::vector<IncidentAlbedo> MaximaBetween(const std::vector<IncidentAlbedo>& profile,
                                           const AlbedoGrid& grid) {
-  const Rgb largest = LargestByChannel(profile);
+  const Rgb bound = RefinementBound(profile, grid);
   std::vector<IncidentAlbedo> maxima;
   for (auto row = profile.begin(); row != profile.end();) {
     const double phi_i = row->phi_i;
     const auto end =
         std::find_if(row, profile.end(), [phi_i](const auto& at) { return at.phi_i != phi_i; });
-    for (double theta_i : Maxima({row, end}, largest, grid)) {
+    for (double theta_i : Maxima({row, end}, bound)) {
       maxima.push_back({theta_i, phi_i, 0.0, {}});
     }
     row = end;
@@ -191,8 +210,7 @@ void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid, std::span<Incide
   };
   tbb::parallel_for(std::size_t{0}, profile.size(),
                     [&](std::size_t n) { estimates[n] = refined.At(wi(n)); });
-  Rgb bound = LargestByChannel(estimates);
-  for (double& channel : bound) channel = std::max(channel, grid.refine_above);
+  const Rgb bound = RefinementBound(estimates, grid);
   tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
     refined.Refine(wi(n), bound, &estimates[n]);
     profile[n].albedo = estimates[n].albedo;

@@ -19,14 +19,56 @@ constexpr AlbedoGrid kLastGrid = {.angles = 160, .n_phi = 64};
 constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 constexpr double kLeastStep = 1e-7;      // of a correction
-constexpr int kMostCorrections = 100;
+constexpr int kMostCorrections = 50, kMostNewtonSteps = 50;
+constexpr double kAlbedoTolerance = 1e-8;
+constexpr double kRounding = 2e-6;  // of an albedo in single precision, at most
 
-Rgb MeasureLargest(const NetworkShape& shape, const std::vector<double>& weights) {
-  return LargestAlbedos(AlbedoProfile(NeuralBrdf(shape, weights), kLastGrid));
+const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
+  return *std::max_element(profile.begin(), profile.end(),
+                           [channel](const IncidentAlbedo& a, const IncidentAlbedo& b) {
+                             return a.albedo[channel] < b.albedo[channel];
+                           });
 }
 
-bool IsAnyAbove(const Rgb& albedo, double bound) {
-  return std::max({albedo[0], albedo[1], albedo[2]}) > bound;
+double Largest(const Rgb& albedo) { return std::max({albedo[0], albedo[1], albedo[2]}); }
+
+// By how much log(1 + f) has to be lowered at wi so that the channel's albedo becomes the bound.
+double LoweringAt(const Brdf& network, const Vec3& wi, int channel, double bound) {
+  static const auto quadrature = AlbedoQuadrature::OnMerlRows(6, 400);
+  const std::vector<AlbedoNode> nodes = quadrature.Nodes(wi);
+  std::vector<DirectionPair> pairs;
+  for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
+  std::vector<Rgb> values(pairs.size());
+  network.Evaluate(pairs, values);
+  double lowering = 0.0;
+  for (int k = 0; k < kMostNewtonSteps; ++k) {
+    // The albedo, and minus its derivative, of f' = max(0, (1 + f) exp(-lowering) - 1): convex, so
+    // that Newton's steps don't go too far.
+    double albedo = 0.0, slope = 0.0;
+    const double kept = std::exp(-lowering);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const double lowered = (1.0 + values[n][channel]) * kept;
+      if (!(lowered > 1.0)) continue;
+      albedo += nodes[n].weight * (lowered - 1.0);
+      slope += nodes[n].weight * lowered;
+    }
+    if (!(albedo > bound + kAlbedoTolerance)) break;
+    lowering += (albedo - bound) / slope;
+  }
+  return lowering;
+}
+
+// For each channel whose albedo is above the bound somewhere, what the direction where it is largest
+// takes.
+Rgb Lowering(const Brdf& network, const std::vector<IncidentAlbedo>& profile, double bound) {
+  Rgb lowering = {};
+  for (int c = 0; c < 3; ++c) {
+    const IncidentAlbedo& largest = LargestIn(profile, c);
+    if (!(largest.albedo[c] > bound)) continue;
+    const Vec3 wi = FromSpherical(largest.theta_i, largest.phi_i);
+    lowering[c] = LoweringAt(network, wi, c, bound) + kLeastStep;
+  }
+  return lowering;
 }
 
 }  // namespace
@@ -47,18 +89,11 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
     for (int c = 0; c < 3; ++c) stratum.limit[c] = kMostAlbedo - (exact[c] - own[c]);
   });
-  const Rgb largest = LargestAlbedos(profile_);
-  return std::max({largest[0], largest[1], largest[2]});
+  return Largest(LargestAlbedos(profile_));
 }
 
 void EnergyConstraints::Exchange() {
-  for (int c = 0; c < 3; ++c) {
-    const auto largest = std::max_element(profile_.begin(), profile_.end(),
-                                          [c](const IncidentAlbedo& a, const IncidentAlbedo& b) {
-                                            return a.albedo[c] < b.albedo[c];
-                                          });
-    AddStratum(*largest);
-  }
+  for (int c = 0; c < 3; ++c) AddStratum(LargestIn(profile_, c));
   for (std::size_t k = 0; k < profile_.size(); ++k) {
     const bool is_addition = profile_[k].solid_angle == 0.0;
     if (is_addition || k % kStratumSpacing == 0) AddStratum(profile_[k]);
@@ -67,7 +102,7 @@ void EnergyConstraints::Exchange() {
 
 // Unless there is one already, or no need of one.
 void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
-  if (!IsAnyAbove(at.albedo, kMostAlbedo)) return;
+  if (!(Largest(at.albedo) > kMostAlbedo)) return;
   const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
   for (const EnergyStratum& stratum : strata_) {
     if (Length(stratum.wi - wi) <= kSameDirection * wi.z) return;
@@ -81,27 +116,26 @@ double CorrectionOf(double max_albedo) {
 
 Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
   const int last = shape.num_layers() - 1, in = shape.in(last);
-  // As a' = exp(-s) (a + S) - S, S = integral of cos_o where f' > 0: at most pi, and less the more
-  // is cut off, so that steps which take S for that of the last one don't go too far.
-  Rgb support = {kPi, kPi, kPi}, sum = {};
-  Rgb largest = MeasureLargest(shape, *weights);
-  for (int k = 0; k < kMostCorrections && IsAnyAbove(largest, kMostAlbedo); ++k) {
-    Rgb step = {};
-    for (int c = 0; c < 3; ++c) {
-      if (!(largest[c] > kMostAlbedo)) continue;
-      step[c] = std::log((largest[c] + support[c]) / (kMostAlbedo + support[c])) + kLeastStep;
-      (*weights)[shape.offset(last) + c * (in + 1) + in] -= step[c];
-      sum[c] += step[c];
-    }
-    const Rgb before = largest;
-    largest = MeasureLargest(shape, *weights);
-    for (int c = 0; c < 3; ++c) {
-      if (step[c] == 0.0) continue;
-      const double kept = std::exp(-step[c]);
-      support[c] = std::clamp((kept * before[c] - largest[c]) / (1.0 - kept), 0.0, kPi);
+  Rgb sum = {};
+  double largest = 0.0;
+  // In single precision until nothing is left to do; then in double.
+  for (bool exactly : {false, true}) {
+    const double bound = exactly ? kMostAlbedo : kMostAlbedo - kRounding;
+    for (int k = 0; k < kMostCorrections; ++k) {
+      const NeuralBrdf exact(shape, *weights);
+      const FastNeuralBrdf fast(exact);
+      const Brdf& network = exactly ? static_cast<const Brdf&>(exact) : fast;
+      const std::vector<IncidentAlbedo> profile = AlbedoProfile(network, kLastGrid);
+      largest = Largest(LargestAlbedos(profile));
+      if (!(largest > bound)) break;
+      const Rgb lowering = Lowering(network, profile, bound);
+      for (int c = 0; c < 3; ++c) {
+        sum[c] += lowering[c];
+        (*weights)[shape.offset(last) + c * (in + 1) + in] -= lowering[c];
+      }
     }
   }
-  return {std::max({sum[0], sum[1], sum[2]}), std::max({largest[0], largest[1], largest[2]})};
+  return {Largest(sum), largest};
 }
 
 }  // namespace pbnbrdf

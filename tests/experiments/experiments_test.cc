@@ -156,9 +156,9 @@ constexpr char kAblationHeader[] =
 
 TEST(Ablation, WritesEveryFitAndTheTables) {
   const TemporaryFolder folder;
-  const ProgramResult run = RunAblation(
-      folder,
-      {"--seeds=2", "--materials=metal=builtin:satin-gold", "diffuse=builtin:wall-plaster"});
+  const ProgramResult run =
+      RunAblation(folder, {"--seeds=2", "--jobs=2", "--materials=metal=builtin:satin-gold",
+                           "diffuse=builtin:wall-plaster"});
   ASSERT_EQ(run.status, 0);
   const std::string csv = Read(folder / "results/ablation.csv");
   EXPECT_THAT(csv, testing::StartsWith(std::string(kAblationHeader) + "\n"));
@@ -209,12 +209,35 @@ TEST(Ablation, CountsFitsThatFail) {
 
 TEST(Ablation, RejectsWhatItCantDo) {
   const TemporaryFolder folder;
-  for (const char* flag : {"--tables=5", "--seeds=0", "--base=other", "--chromaticity_weights=-1",
-                           "--chromaticity_weights=x", "--heldout_samples=0", "--scale_to_albedo=0",
-                           "--samples=0", "--materials=sgd:brass", "--materials=absent.binary",
-                           "--materials=builtin:satin-gold,builtin:satin-gold"}) {
+  for (const char* flag :
+       {"--tables=5", "--seeds=0", "--base=other", "--chromaticity_weights=-1",
+        "--chromaticity_weights=x", "--heldout_samples=0", "--scale_to_albedo=0", "--samples=0",
+        "--jobs=0", "--materials=sgd:brass", "--materials=absent.binary",
+        "--materials=builtin:satin-gold,builtin:satin-gold"}) {
     EXPECT_EQ(RunAblation(folder, {flag}).status, 1) << flag;
   }
+}
+
+TEST(Collection, WritesEveryFitAndThoseThatFail) {
+  const TemporaryFolder folder;
+  WriteEmptyTable(folder / "empty.binary");
+  const ProgramResult run = RunIn(
+      folder, "collection",
+      {"--max_iterations=3", "--samples=300", "--heldout_samples=500", "--threads=1", "--jobs=1",
+       "--seeds=1,2", "metal=builtin:satin-gold", folder / "empty.binary", "builtin:rolled-brass"});
+  ASSERT_EQ(run.status, 0);
+  const auto rows = ReadRows(folder / "results/collection.csv",
+                             "material,material_class,seed,iterations,seconds,mean_abs_log_error,"
+                             "hrl,hcl,max_directional_albedo");
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[1][0], "satin-gold");
+  EXPECT_EQ(rows[1][1], "metal");
+  EXPECT_EQ(rows[1][2], "2");
+  EXPECT_EQ(rows[2][0], "rolled-brass");
+  for (const auto& row : rows) EXPECT_GT(ParseNumber("error", row[5]), 0.0);
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 2.\n\n- empty, seed 1: "));
+  EXPECT_THAT(run.output, HasSubstr("| **median**"));
+  EXPECT_EQ(RunIn(folder, "collection", {}).status, 1);
 }
 
 TEST(JacobianCost, WritesTableAndFigure) {
