@@ -49,6 +49,27 @@ TEST(AblationMarkdown, CountsMaterialsThatMakeEnergy) {
               ContainsRegex("\\| log +\\| +1.0000020 \\| +1.2000000 \\|.*\\| 2 of 3 "));
 }
 
+TEST(AblationMarkdown, SaysWhatTheEnergyTermCostsWhichMaterials) {
+  std::vector<AblationRecord> records;
+  for (const auto& [material, albedo, error, energy_error] :
+       {std::tuple("dark", 0.5, 0.1, 0.1), std::tuple("white", 1.0, 0.1, 0.2),
+        std::tuple("diverges", 7.0, 0.1, 0.8)}) {
+    records.push_back(Record(4, kMaterialItself, material));
+    records.back().energy.max_directional_albedo = albedo;
+    records.push_back(Record(4, "log", material));
+    records.back().errors.mean_abs_log_error = error;
+    records.push_back(Record(4, "log + energy", material));
+    records.back().errors.mean_abs_log_error = energy_error;
+  }
+  const std::string text = AblationMarkdown(records);
+  EXPECT_THAT(text,
+              HasSubstr("| all                                  |         3 |  2.000 | 8.000 |"));
+  EXPECT_THAT(text,
+              HasSubstr("| conserve energy themselves           |         2 |  1.500 | 2.000 |"));
+  EXPECT_THAT(text,
+              HasSubstr("| don't                                |         1 |  8.000 | 8.000 |"));
+}
+
 AblationRecord DarkRecord(const std::string& set_up, const std::string& material,
                           const std::string& material_class, double p95) {
   AblationRecord record = Record(3, set_up, material);
