@@ -4,6 +4,7 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "ablation_tables.h"
 #include "comparison.h"
@@ -276,35 +277,55 @@ class Ablation {
       record.energy = MeasureEnergy(*variant.brdf);
       Keep(record, index);
     }
-    for (const SetUp& set_up : SetUps(table, plan_.base)) {
-      for (std::size_t seed : plan_.seeds) {
-        record.set_up = set_up.name;
-        record.seed = seed;
-        if (RunFit(*variant.brdf, set_up.problem, &record)) Keep(record, index);
-      }
+    for (std::size_t seed : plan_.seeds) {
+      record.seed = seed;
+      RunSetUps(SetUps(table, plan_.base), *variant.brdf, record, index);
     }
   }
 
-  // record: names the fit and takes its measures. Returns whether there are any.
-  bool RunFit(const Brdf& material, FitProblem problem, AblationRecord* record) {
+  // record: names the fits. The last one is done first: where its energy term had nothing to do, its
+  // fit is also that of the set-up without the term.
+  void RunSetUps(const std::vector<SetUp>& set_ups, const Brdf& material, AblationRecord record,
+                 std::size_t index) {
+    std::vector<AblationRecord> fits;
+    bool is_known = false;
+    for (auto set_up = set_ups.rbegin(); set_up != set_ups.rend(); ++set_up) {
+      record.set_up = set_up->name;
+      if (!is_known) {
+        const std::optional<EnergySummary> energy = RunFit(material, set_up->problem, &record);
+        if (!energy) continue;
+        const bool has_acted = energy->rounds > 0 || energy->correction > 0.0;
+        is_known = set_up->problem.energy_weight > 0.0 && !has_acted;
+      }
+      fits.push_back(record);
+    }
+    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) Keep(*fit, index);
+  }
+
+  // record: names the fit and takes its measures. None if it failed.
+  std::optional<EnergySummary> RunFit(const Brdf& material, FitProblem problem,
+                                      AblationRecord* record) {
     const std::string what = StrCat("table ", record->table, ", ", record->material, ", ",
                                     record->set_up, ", seed ", record->seed, ": ");
     problem.samples = FLAGS_samples;
     problem.seed = record->seed;
     if (!material.IsIsotropic()) problem.encoding = EncodingFor(material);
+    std::optional<EnergySummary> energy;
     try {
-      Measure(material, FitBrdf(material, problem, plan_.options), record);
+      const Fit fit = FitBrdf(material, problem, plan_.options);
+      Measure(material, fit, record);
+      energy = fit.summary.energy;
     } catch (const Error& error) {
       NoteFailure(what + error.what());
-      return false;
+      return std::nullopt;
     }
     if (!IsFinite(*record)) {
       NoteFailure(what + "a measure isn't finite");
-      return false;
+      return std::nullopt;
     }
     std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record->errors.mean_abs_log_error,
                  record->seconds);
-    return true;
+    return energy;
   }
 
   static void Measure(const Brdf& material, const Fit& fit, AblationRecord* record) {

@@ -20,7 +20,6 @@ constexpr double kSameDirection = 0.02;  // radians at the normal, less towards 
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 constexpr double kLeastStep = 1e-7;      // of a correction
 constexpr int kMostCorrections = 50, kMostNewtonSteps = 50;
-constexpr double kAlbedoTolerance = 1e-8;
 constexpr double kRounding = 2e-6;  // of an albedo in single precision, at most
 
 const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
@@ -32,10 +31,11 @@ const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int 
 
 double Largest(const Rgb& albedo) { return std::max({albedo[0], albedo[1], albedo[2]}); }
 
-// By how much log(1 + f) has to be lowered at wi so that the channel's albedo becomes the bound.
-double LoweringAt(const Brdf& network, const Vec3& wi, int channel, double bound) {
+// By how much log(1 + f) has to be lowered so that the channel's albedo, which has been measured
+// there, becomes the bound.
+double LoweringAt(const Brdf& network, const IncidentAlbedo& there, int channel, double bound) {
   static const auto quadrature = AlbedoQuadrature::OnMerlRows(6, 400);
-  const std::vector<AlbedoNode> nodes = quadrature.Nodes(wi);
+  const std::vector<AlbedoNode> nodes = quadrature.Nodes(FromSpherical(there.theta_i, there.phi_i));
   std::vector<DirectionPair> pairs;
   for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
   std::vector<Rgb> values(pairs.size());
@@ -52,7 +52,9 @@ double LoweringAt(const Brdf& network, const Vec3& wi, int channel, double bound
       albedo += nodes[n].weight * (lowered - 1.0);
       slope += nodes[n].weight * lowered;
     }
-    if (!(albedo > bound + kAlbedoTolerance)) break;
+    // These nodes aren't those that it was measured with.
+    if (k == 0) bound += albedo - there.albedo[channel];
+    if (!(albedo > bound)) break;
     lowering += (albedo - bound) / slope;
   }
   return lowering;
@@ -65,8 +67,7 @@ Rgb Lowering(const Brdf& network, const std::vector<IncidentAlbedo>& profile, do
   for (int c = 0; c < 3; ++c) {
     const IncidentAlbedo& largest = LargestIn(profile, c);
     if (!(largest.albedo[c] > bound)) continue;
-    const Vec3 wi = FromSpherical(largest.theta_i, largest.phi_i);
-    lowering[c] = LoweringAt(network, wi, c, bound) + kLeastStep;
+    lowering[c] = LoweringAt(network, largest, c, bound);
   }
   return lowering;
 }
@@ -130,8 +131,10 @@ Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weigh
       if (!(largest > bound)) break;
       const Rgb lowering = Lowering(network, profile, bound);
       for (int c = 0; c < 3; ++c) {
-        sum[c] += lowering[c];
-        (*weights)[shape.offset(last) + c * (in + 1) + in] -= lowering[c];
+        if (lowering[c] == 0.0) continue;
+        const double step = lowering[c] + std::ldexp(kLeastStep, k);  // more, if it goes on and on
+        sum[c] += step;
+        (*weights)[shape.offset(last) + c * (in + 1) + in] -= step;
       }
     }
   }

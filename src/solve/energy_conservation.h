@@ -50,8 +50,8 @@ struct Correction {
   double max_albedo;  // the largest directional albedo that is left
 };
 
-// Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by the
-// least s of each channel with which no directional albedo is above kMostAlbedo. A reciprocal
+// Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by about
+// the least s of each channel with which no directional albedo is above kMostAlbedo. A reciprocal
 // network stays so.
 Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
 
