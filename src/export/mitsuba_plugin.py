@@ -12,6 +12,7 @@ Parameters, all optional:
 
 The two are set for the network beside this file; others make another's image noisier, not wrong.
 Reflects on the side of the normal only: wrap it in "twosided" for both. RGB and monochromatic modes.
+LLVM variants need LLVM 16 or later: of an arc tangent 15 makes no machine code for AVX-512.
 """
 import array
 import json

@@ -40,9 +40,11 @@ void WriteAttribute(const Handle& object, const char* name, const Handle& type, 
   if (data != nullptr) Check(H5Awrite(attribute.get(), type.get(), data) >= 0);
 }
 
-void AddText(const Handle& object, const char* name, const std::string& text) {
-  WriteAttribute(object, name, TextType(text.size()), Checked({H5Screate(H5S_SCALAR), H5Sclose}),
-                 text.data());
+// One text, of variable length as Keras stores them.
+void AddText(const Handle& object, const char* name, const char* text) {
+  const Handle type = Checked({H5Tcopy(H5T_C_S1), H5Tclose});
+  Check(H5Tset_size(type.get(), H5T_VARIABLE) >= 0);
+  WriteAttribute(object, name, type, Checked({H5Screate(H5S_SCALAR), H5Sclose}), &text);
 }
 
 // A list of texts, each padded to the longest, as NumPy stores them. Of an empty list NumPy makes

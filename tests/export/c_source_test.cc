@@ -113,8 +113,7 @@ TEST_F(CSourceTest, IsCppToo) {
 
 TEST(CSource, TextsThatAreNotCodeStayComments) {
   const NetworkShape shape(Encoding::kMerl, {2}, Activation::kTanh);
-  const NeuralBrdf network(shape, RandomWeights(shape, 1.0, 1),
-                           {{"material", "a*/b\\\n?c\xff@"}});
+  const NeuralBrdf network(shape, RandomWeights(shape, 1.0, 1), {{"material", "a*/b\\\n?c\xff@"}});
   const std::string text = CSource(network, "gold");
   EXPECT_THAT(text, HasSubstr("fitted to a_/b___c_@.\n"));
   EXPECT_THAT(ErrorOf([&] { CSource(network, "2gold"); }), HasSubstr("name=2gold is not a letter"));
