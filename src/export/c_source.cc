@@ -22,7 +22,7 @@ constexpr std::string_view kHead = R"(
 
 // Half vector and difference vector d in its frame, as brdf/half_diff.h.
 constexpr std::string_view kHalfDiff = R"(
-/* The six inputs of the network. Exchanging wi and wo changes nothing but the signs of dx and dy. */
+/* The six inputs of the network. Exchanging wi and wo changes but the signs of dx and dy. */
 static inline void @_encode(const double wi[3], const double wo[3], double x[6]) {
   const double sum_x = wi[0] + wo[0], sum_y = wi[1] + wo[1], sum_z = wi[2] + wo[2];
   const double half_x = 0.5 * (wi[0] - wo[0]), half_y = 0.5 * (wi[1] - wo[1]);

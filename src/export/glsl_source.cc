@@ -9,8 +9,9 @@ namespace {
 constexpr std::string_view kHead = R"(//
 //   vec3 @_eval(vec3 wi, vec3 wo);
 //
-// wi points to the light, wo to the viewer: unit vectors, normal +z. The value is linear RGB in 1/sr,
-// without the cosine; 0 where a direction isn't above the horizon. GLSL ES 3.00 or later.
+// wi points to the light, wo to the viewer: unit vectors, normal +z. The value is linear RGB in
+// 1/sr, without the cosine; 0 where a direction isn't above the horizon. GLSL ES 3.00 or later.
+// What follows in the shader is highp too, unless it says otherwise.
 precision highp float;
 precision highp int;
 
@@ -18,7 +19,8 @@ precision highp int;
 vec4 @_expm1(vec4 x) {
   vec4 n = floor(x * 1.44269504 + 0.5);
   vec4 r = x - n * 0.693359375 + n * 2.12194440e-4;
-  vec4 p = 0.499999982 + r * (0.166665437 + r * (0.0416671996 + r * (0.00836651394 + r * 0.00138825227)));
+  vec4 p = 0.0416671996 + r * (0.00836651394 + r * 0.00138825227);
+  p = 0.499999982 + r * (0.166665437 + r * p);
   p = r + r * r * p;
   vec4 scale = intBitsToFloat((ivec4(n) + 127) << 23);
   return scale * p + (scale - 1.0);
@@ -61,22 +63,22 @@ float @_log(float x) {
 
 // Half vector and difference vector d in its frame, as brdf/half_diff.h.
 constexpr std::string_view kHalfDiff = R"(
-// The six inputs of the network. Exchanging wi and wo changes nothing but the signs of dx and dy.
+// The six inputs of the network. Exchanging wi and wo changes but the signs of dx and dy.
 void @_encode(vec3 wi, vec3 wo, out vec4 x0, out vec4 x1) {
   vec3 sum = wi + wo, halves = 0.5 * (wi - wo);
   float tangential2 = sum.x * sum.x + sum.y * sum.y;
-  float length = sqrt(tangential2 + sum.z * sum.z), tangential = sqrt(tangential2);
+  float size = sqrt(tangential2 + sum.z * sum.z), tangential = sqrt(tangential2);
   bool pole = !(tangential2 > 1e-36);
   float cos_phi = pole ? 1.0 : sum.x / tangential, sin_phi = pole ? 0.0 : sum.y / tangential;
-  float sin_h = pole ? 0.0 : tangential / length, cos_h = sum.z / length;
+  float sin_h = pole ? 0.0 : tangential / size, cos_h = sum.z / size;
   float radial = halves.x * cos_phi + halves.y * sin_phi;
   float dx = radial * cos_h - halves.z * sin_h;
   float dy = halves.y * cos_phi - halves.x * sin_phi;
-  float dz = 0.5 * length;
+  float dz = 0.5 * size;
 )";
 
 constexpr std::string_view kThetaH =
-    R"(  float theta_h = pole ? 0.0 : @_angle(tangential / (length + sum.z));
+    R"(  float theta_h = pole ? 0.0 : @_angle(tangential / (size + sum.z));
   float root = sqrt(theta_h * 0.636619772);
   float log_h = @_log(theta_h + 1e-3) * 0.333333333;
 )";

@@ -11,7 +11,8 @@ Parameters, all optional:
     glossy    how much of the draws it gets, 0 to 1; the rest is cosine distributed
 
 The two are set for the network beside this file; others make another's image noisier, not wrong.
-Reflects on the side of the normal only: wrap it in "twosided" for both. RGB and monochromatic modes.
+Reflects on the side of the normal only: wrap it in "twosided" for both. RGB and monochromatic
+modes. eval() includes the cosine, as Mitsuba has it.
 LLVM variants need LLVM 16 or later: of an arc tangent 15 makes no machine code for AVX-512.
 """
 import array
@@ -59,7 +60,8 @@ class Network:
             raise ValueError(f"{path}: not a network of pbnbrdf")
         self.encoding = metadata["encoding"]
         self.encode = ENCODERS[self.encoding]
-        self.activate = {"tanh": dr.tanh, "relu": lambda x: dr.maximum(x, 0.0)}[metadata["activation"]]
+        activations = {"tanh": dr.tanh, "relu": lambda x: dr.maximum(x, 0.0)}
+        self.activate = activations[metadata["activation"]]
         self.layers = []  # lists of (row of W, bias)
         while f"fc{len(self.layers) + 1}.weight" in tensors:
             name = f"fc{len(self.layers) + 1}"
@@ -185,7 +187,8 @@ class NeuralBSDF(mi.BSDF):
 
     def is_active(self, ctx, si, wo, active):
         enabled = ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
-        return active & enabled & (mi.Frame3f.cos_theta(si.wi) > 0.0) & (mi.Frame3f.cos_theta(wo) > 0.0)
+        cos_theta = mi.Frame3f.cos_theta
+        return active & enabled & (cos_theta(si.wi) > 0.0) & (cos_theta(wo) > 0.0)
 
     def eval(self, ctx, si, wo, active=True):
         # si.wi points to the viewer. Importance travels the other way, which only networks that

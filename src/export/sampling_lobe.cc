@@ -27,9 +27,9 @@ double GgxPdf(const Point& at, double alpha) {
   return g1 * d / (4.0 * at.cos_v);
 }
 
-// Points for one direction v, stratified in the half vector as the map of the albedo is: a narrow lobe
-// falls between those of a uniform grid. Scaled so that the squared mean of f cos is 1; empty if it
-// is 0.
+// Points for one direction v, stratified in the half vector as the map of the albedo is: a narrow
+// lobe falls between those of a uniform grid. Scaled so that the squared mean of f cos is 1; empty
+// if it is 0.
 std::vector<Point> Points(const Brdf& brdf, const Vec3& v) {
   std::vector<Point> points;
   std::vector<DirectionPair> pairs;
@@ -82,14 +82,14 @@ SamplingLobe FitSamplingLobe(const Brdf& brdf) {
     for (const Point& point : points) {
       const double ggx = GgxPdf(point, alpha), cosine = point.cos_o / kPi;
       for (int w = 0; w < kWeights; ++w) {
-        const double weight = 0.1 * (w + 1);
+        const double weight = (w + 1) / 10.0;
         moments[w] += point.second_moment / (weight * ggx + (1.0 - weight) * cosine);
       }
     }
     for (int w = 0; w < kWeights; ++w) {
       if (moments[w] >= least) continue;
       least = moments[w];
-      best = {alpha, 0.1 * (w + 1)};
+      best = {alpha, (w + 1) / 10.0};
     }
   }
   return best;

@@ -19,8 +19,8 @@ void CheckIdentifier(const std::string& name);
 // The text with each "@" replaced by the name.
 std::string WithName(std::string_view text, const std::string& name);
 
-// What the network is and what it was fitted to, one line of printable ASCII without "*", "\" and "?",
-// which could end a comment or continue it.
+// What the network is and what it was fitted to, one line of printable ASCII without "*", "\" and
+// "?", which could end a comment or continue it.
 std::string CommentText(const NeuralBrdf& network);
 
 // The weight as float. Throws Error if it is beyond single precision.

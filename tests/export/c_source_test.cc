@@ -35,8 +35,8 @@ class CSourceTest : public testing::Test {
     WriteBytes(folder_ / "main.c", Program(networks_));
   }
 
-  // What the program, compiled with the flags, prints for the pairs: network n's value at pair p is at
-  // p * networks + n.
+  // What the program, compiled with the flags, prints for the pairs: network n's value at pair p is
+  // at p * networks + n.
   Values Run(const std::string& flags, const std::vector<FloatPair>& pairs) const {
     WriteBytes(folder_ / "pairs", std::string(reinterpret_cast<const char*>(pairs.data()),
                                               pairs.size() * sizeof(FloatPair)));

@@ -48,7 +48,7 @@ TEST(CsvTable, TheGridIsTheDocumentedOne) {
   const NeuralBrdf network = RandomNetwork(Encoding::kAnisotropic, Activation::kTanh, {5}, 3);
   const auto grid = [](double angle, double step) {
     const double steps = angle / step;
-    EXPECT_NEAR(steps, std::round(steps), 1e-6);
+    EXPECT_NEAR(steps, std::round(steps), 1e-5);
     return std::lround(steps);
   };
   std::set<long> theta_h, theta_d, phi_d;

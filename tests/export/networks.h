@@ -47,8 +47,8 @@ inline std::vector<std::pair<std::string, NeuralBrdf>> NetworksOfAllKinds() {
   return networks;
 }
 
-// Near the mirror direction down to 1e-7, retroreflection, the pole, grazing, the horizon and below it;
-// then random ones.
+// Near the mirror direction down to 1e-7, retroreflection, the pole, grazing, the horizon and below
+// it; then random ones.
 inline std::vector<FloatPair> HardPairs() {
   std::vector<FloatPair> pairs = {{0, 0, 1, 0, 0, 1},
                                   {0.6f, 0, 0.8f, 0.6f, 0, 0.8f},

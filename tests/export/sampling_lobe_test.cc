@@ -30,11 +30,11 @@ class LobeBrdf final : public PointwiseBrdf {
 };
 
 TEST(SamplingLobe, FindsTheLobeThatItIs) {
-  for (int a : {3, 12, 20, 28}) {  // of the grid's 32 steps from 0.002 to 1
+  // Of the grid's 32 steps from 0.002 to 1; of wider lobes the horizon cuts off a part.
+  for (int a : {3, 8, 14, 20}) {
     for (double weight : {0.2, 0.7}) {
       const double alpha = std::pow(0.002, 1.0 - a / 31.0);
       const SamplingLobe lobe = FitSamplingLobe(LobeBrdf({alpha, weight}));
-      // The least second moment is 1 for all of phase space; cut at the horizon it is a bit beside.
       EXPECT_NEAR(std::log(lobe.alpha / alpha), 0.0, 0.25) << alpha << " " << weight;
       EXPECT_NEAR(lobe.weight, weight, 0.11) << alpha << " " << weight;
     }

@@ -1,7 +1,7 @@
-"""What the interop tests share: random networks, pairs of directions, and the program's values at them.
+"""What the interop tests share: random networks, pairs of directions, and the program's values.
 
-Each test is called as  TEST.py PROGRAM FOLDER  with a folder of its own to write to. Exit status 77: a
-package is missing, and the test is skipped.
+Each test is called as  TEST.py PROGRAM FOLDER  with a folder of its own to write to. Exit status 77:
+a package is missing, and the test is skipped.
 """
 import importlib
 import os
@@ -69,12 +69,13 @@ def all_networks():
         for k, activation in enumerate(ACTIVATIONS):
             name = f"{encoding}_{activation}"
             file = path(name + ".safetensors")
-            write_network(file, random_layers(HIDDEN[(2 * n + k) % 3], 2 * n + k), encoding, activation)
+            seed = 2 * n + k
+            write_network(file, random_layers(HIDDEN[seed % 3], seed), encoding, activation)
             yield name, encoding, file
 
 
 def directions(count, seed=3):
-    """wi and wo, N x 3 float32: mirror directions and close to them, grazing, below the horizon, random."""
+    """wi and wo, N x 3 float32: at and near the mirror, grazing, below the horizon, random."""
     rng = np.random.default_rng(seed)
     wi, wo = [rng.normal(size=(count, 3)) for _ in range(2)]
     wi[:, 2], wo[:, 2] = np.abs(wi[:, 2]), np.abs(wo[:, 2])

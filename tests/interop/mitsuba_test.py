@@ -1,5 +1,5 @@
-"""Exported BSDFs in Mitsuba 3: values against the network in double precision, which weights_test.py
-compares with the library, densities against samples, and a render.
+"""Exported BSDFs in Mitsuba 3: values against the network in double precision, which
+weights_test.py compares with the library, densities against samples, and a render.
 """
 import importlib
 import sys
@@ -93,7 +93,7 @@ def check_density(what, parameters, angles):
 
 
 def albedo(network, viewer):
-    """The integral of f cos over the light's directions, by the midpoint rule in the half vector."""
+    """The integral of f cos over the light's directions: midpoint rule in the half vector."""
     n_theta, n_phi = 400, 200
     u = (np.arange(n_theta) + 0.5) / n_theta
     theta, phi = np.meshgrid(np.pi / 2 * u**2, 2 * np.pi * (np.arange(n_phi) + 0.5) / n_phi,
@@ -127,7 +127,8 @@ def check_samples(what, bsdf, network):
         check(f"{what}, weights at {degrees} degrees", np.max(np.abs(weights[drawn] - expected)
                                                              / (1 + expected)), 1e-5)
         assert not weights[~drawn].any()
-        deviations = np.abs(weights.mean(axis=0) - expected_mean) / (weights.std(axis=0) / np.sqrt(count))
+        standard_error = weights.std(axis=0) / np.sqrt(count)
+        deviations = np.abs(weights.mean(axis=0) - expected_mean) / standard_error
         print(f"{what}, albedo at {degrees} degrees: {expected_mean}, deviation of one weight",
               weights.std(axis=0))
         check(f"{what}, standard errors that the mean is off", deviations.max(), 5)
@@ -162,7 +163,8 @@ def check_modes():
     """One channel is the luminance; what isn't RGB is refused."""
     import_plugin("llvm_ad_mono", "gold")
     wi, wo = directions(400)
-    value = mi.load_dict({"type": "pbnbrdf"}).eval(mi.BSDFContext(), interaction(vectors(wo)), vectors(wi))
+    bsdf = mi.load_dict({"type": "pbnbrdf"})
+    value = bsdf.eval(mi.BSDFContext(), interaction(vectors(wo)), vectors(wi))
     rgb = reference.evaluate(reference.read(GOLD), wi, wo) * np.maximum(wi[:, 2:], 0)
     check_error("gold, one channel", np.array(value)[0], rgb @ [0.212671, 0.715160, 0.072169])
     import_plugin("llvm_ad_spectral", "gold")
@@ -173,8 +175,8 @@ def check_modes():
         assert "RGB or monochromatic" in str(error), error
 
 
-program("fit", "--material=builtin:satin-gold", "--samples=1000", "--max_iterations=20", "--terms=log",
-        f"--out={GOLD}")
+program("fit", "--material=builtin:satin-gold", "--samples=1000", "--max_iterations=20",
+        "--terms=log", f"--out={GOLD}")
 program("export", f"--fit={GOLD}", "--format=mitsuba", f"--out={path('gold.py')}")
 networks = list(all_networks())
 

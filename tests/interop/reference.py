@@ -1,7 +1,7 @@
-"""The network once more, in NumPy and double precision, from the file that the official package opens.
+"""The network once more, in NumPy and double precision, from what the official package reads.
 
-Unlike the program's `values`, it takes directions as they are, also those that have length 1 in single
-precision only: near the mirror direction that makes a difference.
+Unlike the program's `values`, it takes directions as they are, also those that have length 1 in
+single precision only: near the mirror direction that makes a difference.
 """
 from common import np, require
 

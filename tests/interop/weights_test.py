@@ -1,7 +1,7 @@
 """What pbnbrdf writes opens with the official packages, and holds the network that it evaluates.
 
-safetensors: a fit, evaluated in NumPy, against the program's values. Keras .h5 and NumPy .npy: opened by
-h5py, by Keras itself and by NumPy, evaluated there.
+safetensors: a fit, evaluated in NumPy, against the program's values. Keras .h5 and NumPy .npy:
+opened by h5py, by Keras itself and by NumPy, evaluated there.
 """
 import importlib.abc
 import importlib.util
@@ -22,7 +22,8 @@ def check_values(what, values, expected):
 
 def unit_directions(count):
     """As double precision has them."""
-    return [v / np.linalg.norm(v.astype(np.float64), axis=1, keepdims=True) for v in directions(count)]
+    exact = [v.astype(np.float64) for v in directions(count)]
+    return [v / np.linalg.norm(v, axis=1, keepdims=True) for v in exact]
 
 
 def check_safetensors():
@@ -30,8 +31,8 @@ def check_safetensors():
     # directions of length 1 once more.
     wi, wo = [v[1000:] for v in unit_directions(4000)]
     fit = path("fit.safetensors")
-    program("fit", "--material=builtin:satin-gold", "--samples=500", "--max_iterations=5", "--terms=log",
-            f"--out={fit}")
+    program("fit", "--material=builtin:satin-gold", "--samples=500", "--max_iterations=5",
+            "--terms=log", f"--out={fit}")
     for name, file in [("fit", fit), *[(name, file) for name, _, file in all_networks()]]:
         network = reference.read(file)
         values = reference.evaluate(network, wi, wo)
@@ -48,7 +49,7 @@ def relu_network(x, layers):
 
 
 def exported_nbrdf():
-    """A random network of NBRDF's kind as .safetensors, .h5 and .npy, and inputs and values of it."""
+    """A random network of NBRDF's kind as .safetensors, .h5 and .npy; inputs and their values."""
     file = path("nbrdf.safetensors")
     write_network(file, random_layers([21, 21], seed=5), "cartesian", "relu")
     program("export", f"--fit={file}", "--format=h5", f"--out={path('nbrdf.h5')}")
@@ -79,8 +80,8 @@ def check_npy(inputs, expected):
 
 
 class StandIns(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Empty shells of the large packages that Keras' NumPy backend imports for convolutions and other
-    layers, of which there are none here."""
+    """Empty shells of the large packages that Keras' NumPy backend imports for convolutions and
+    other layers, of which there are none here."""
 
     def find_spec(self, name, path=None, target=None):
         if name.split(".")[0] in ("jax", "scipy"):

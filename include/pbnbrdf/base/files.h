@@ -23,8 +23,8 @@ struct FileContent {
   std::string path, content;
 };
 
-// Several regular files, in one folder or more: none is replaced before the new content of all is on
-// the disk. Throws Error; the temporary files are removed. One file may be what WriteFile takes.
+// Several regular files, in one folder or more: none is replaced before the new content of all is
+// on the disk. Throws Error; the temporary files are removed. One file may be what WriteFile takes.
 void WriteFiles(const std::vector<FileContent>& files);
 
 // Throws Error unless WriteFile(path, ...) has a folder to write to that grants it: asked before a

@@ -15,8 +15,8 @@ namespace pbnbrdf {
 //   phi_d   = i 15 degrees, i = 0..23
 //   phi_h   = 0 if the Brdf is isotropic, else i 30 degrees, i = 0..11
 //
-// of which the pairs above the horizon are written, each once. Values are those at the angles as they are
-// written. Isotropic: phi_i = 0.
+// of which the pairs above the horizon are written, each once. Values are those at the angles as
+// they are written. Isotropic: phi_i = 0.
 std::string CsvTable(const Brdf& brdf);
 
 }  // namespace pbnbrdf

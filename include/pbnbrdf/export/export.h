@@ -1,4 +1,4 @@
-// export.h: a fitted network as a file that something else reads: a renderer, a compiler, a runtime.
+// export.h: a fitted network as a file for something else: a renderer, a compiler, a runtime.
 #pragma once
 
 #include <string>
@@ -30,11 +30,11 @@ inline constexpr NameTable<ExportFormat, 8> kExportFormats = {{{"npy", ExportFor
                                                                {"mitsuba", ExportFormat::kMitsuba},
                                                                {"onnx", ExportFormat::kOnnx}}};
 
-// The file, or files, of which `path` names the main one: NumPy's are ...fc1.npy and five beside it, the
-// plugin for Mitsuba ....py and its weights, ..._weights.safetensors. name: how the functions of source
-// code are called; empty: as the file is, up to its first dot, with characters that an identifier can't
-// have replaced by '_'. Throws Error if the format can't hold this network, or if a name isn't what the
-// format needs. The same network gives the same bytes.
+// The file, or files, of which `path` names the main one: NumPy's are ...fc1.npy and five beside
+// it, the plugin for Mitsuba ....py and its weights, ..._weights.safetensors. name: how the
+// functions of source code are called; empty: as the file is, up to its first dot, with characters
+// that an identifier can't have replaced by '_'. Throws Error if the format can't hold this
+// network, or if a name isn't what the format needs. The same network gives the same bytes.
 std::vector<FileContent> ExportedFiles(const NeuralBrdf& network, ExportFormat format,
                                        const std::string& path, const std::string& name = "");
 

@@ -18,9 +18,9 @@ struct SamplingLobe {
   double weight = 0.5;  // [0.1, 0.9]: neither lobe is ever left out
 };
 
-// The lobe for which the estimator f cos / pdf has the least second moment, summed over some incident
-// angles with each one's relative to its squared mean, over a grid of alpha and weight. Any lobe gives
-// an unbiased estimate; this one is less noisy.
+// The lobe for which the estimator f cos / pdf has the least second moment, summed over some
+// incident angles with each one's relative to its squared mean, over a grid of alpha and weight.
+// Any lobe gives an unbiased estimate; this one is less noisy.
 SamplingLobe FitSamplingLobe(const Brdf& brdf);
 
 }  // namespace pbnbrdf

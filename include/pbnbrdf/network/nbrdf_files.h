@@ -29,9 +29,9 @@ bool IsNbrdfFile(const std::string& path);
 // isn't finite.
 NeuralBrdf ReadNbrdf(const std::string& path);
 
-// What ReadNbrdf reads from the same name, as float32: one Keras file or six NumPy files. Throws Error
-// if the network isn't one of relu units behind the cartesian encoding, if a weight is beyond float32,
-// or if NumPy files are asked for and there are not two hidden layers.
+// What ReadNbrdf reads from the same name, as float32: one Keras file or six NumPy files. Throws
+// Error if the network isn't one of relu units behind the cartesian encoding, if a weight is beyond
+// float32, or if NumPy files are asked for and there are not two hidden layers.
 std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path);
 
 }  // namespace pbnbrdf
