@@ -1,7 +1,7 @@
 """What the interop tests share: random networks, pairs of directions, and the program's values.
 
-Each test is called as  TEST.py PROGRAM FOLDER  with a folder of its own to write to. Exit status 77:
-a package is missing, and the test is skipped.
+Each test is called as  TEST.py PROGRAM FOLDER  with a folder of its own to write to. Exit status
+77: a package is missing, and the test is skipped.
 """
 import importlib
 import os
