@@ -1,5 +1,5 @@
 #!/bin/sh
-# What there is to do here: ./do demo | test | build | bench | experiments NAME | sanitize.
+# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize.
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
@@ -69,15 +69,25 @@ or turn the fit into a MERL file that a renderer reads
 TXT
 }
 
+# The Python packages that the tests of exported files need, in .peers. They skip without it.
+peers() {
+  packages="libllvm19 python3-venv"  # Mitsuba's LLVM variants compile with LLVM
+  install_packages
+  [ -x .peers/bin/python ] || python3 -m venv .peers
+  .peers/bin/python -m pip install --quiet --disable-pip-version-check -r tests/interop/requirements.txt
+}
+
 run_tests() {
+  packages="$packages libegl-dev libgl1-mesa-dri libgles-dev"  # shaders run without a window
   build_in "$build" -DPBNBRDF_WERROR=ON
   ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)"
 }
 
-# The tests under the address and undefined behaviour sanitizers.
+# The tests under the address and undefined behaviour sanitizers, but those that run other programs.
 sanitize() {
   build_in build-sanitize -DPBNBRDF_SANITIZE=ON -DPBNBRDF_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo
-  ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" --exclude-regex '^package$'
+  ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" \
+    --exclude-regex '^(package|interop_.*|GlslSource\..*)$'
 }
 
 # experiments NAME [ARGUMENT ...]: a program of experiments/; its table and figure in build/results.
@@ -99,12 +109,13 @@ experiments() {
 case ${1:-} in
   demo) demo ;;
   test) run_tests ;;
+  peers) peers ;;
   build) build_in "$build" ;;
   bench) build_in "$build" && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
   *)
-    echo "usage: ./do demo | test | build | bench | experiments NAME | sanitize" >&2
+    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize" >&2
     exit 2
     ;;
 esac

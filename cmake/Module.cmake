@@ -39,3 +39,16 @@ function(pbnbrdf_module name)
   set_target_properties(pbnbrdf_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY PBNBRDF_MODULES pbnbrdf_${name})
 endfunction()
+
+# pbnbrdf_embed(TARGET FILE NAME): the text of FILE as the constant NAME, for TARGET's own sources, in a
+# header called as FILE is, with _text.h for its extension.
+function(pbnbrdf_embed target file name)
+  set(source ${PROJECT_SOURCE_DIR}/${file})
+  get_filename_component(stem ${file} NAME_WE)
+  set(folder ${PROJECT_BINARY_DIR}/embedded/${target})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+  file(READ ${source} text)
+  file(CONFIGURE OUTPUT ${folder}/${stem}_text.h @ONLY
+       CONTENT "// Made from ${file}.\ninline constexpr char @name@[] = R\"EMBEDDED(@text@)EMBEDDED\";\n")
+  target_include_directories(${target} PRIVATE $<BUILD_INTERFACE:${folder}>)
+endfunction()

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 #include "pbnbrdf/base/error.h"
 
@@ -52,6 +53,40 @@ class SignalsWait {
   sigset_t before_;
 };
 
+// What is to become the file at `path`, under another name in the same folder; removed if that
+// doesn't come about.
+class PartialFile {
+ public:
+  // number: tells those of one process apart.
+  PartialFile(const std::string& path, std::size_t number) : path_(path) {
+    std::error_code code;
+    // A link stays one: what it points to is replaced.
+    target_ = fs::exists(path, code) ? fs::canonical(path, code) : fs::path(path);
+    partial_ = target_.parent_path() / StrCat(".pbnbrdf.", getpid(), ".", number, ".part");
+  }
+  ~PartialFile() {
+    std::error_code code;
+    if (!renamed_) fs::remove(partial_, code);
+  }
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+  void Write(std::string_view content) {
+    if (!WriteBytes(partial_, content)) Fail(path_, ": cannot write: ", Reason());
+  }
+
+  void Rename() {
+    errno = 0;
+    renamed_ = std::rename(partial_.c_str(), target_.c_str()) == 0;
+    if (!renamed_) Fail(path_, ": cannot write: ", Reason());
+  }
+
+ private:
+  const std::string path_;
+  fs::path target_, partial_;
+  bool renamed_ = false;
+};
+
 }  // namespace
 
 std::uintmax_t FileSize(const std::string& path) {
@@ -87,15 +122,27 @@ void WriteFile(const std::string& path, std::string_view content) {
     if (!WriteBytes(path, content)) Fail(path, ": cannot write: ", Reason());
     return;
   }
-  // A link stays one: what it points to is replaced.
-  const fs::path target = fs::exists(status) ? fs::canonical(path, code) : fs::path(path);
-  const fs::path partial = target.parent_path() / StrCat(".pbnbrdf.", getpid(), ".part");
   const SignalsWait until_renamed;
-  if (!WriteBytes(partial, content) || std::rename(partial.c_str(), target.c_str()) != 0) {
-    const std::string reason = Reason();
-    fs::remove(partial, code);
-    Fail(path, ": cannot write: ", reason);
+  PartialFile file(path, 0);
+  file.Write(content);
+  file.Rename();
+}
+
+void WriteFiles(const std::vector<FileContent>& files) {
+  if (files.size() == 1) return WriteFile(files[0].path, files[0].content);
+  for (const FileContent& file : files) {
+    CheckWritable(file.path);
+    if (fs::exists(file.path) && !fs::is_regular_file(file.path)) {
+      Fail(file.path, ": cannot write: not a regular file");
+    }
   }
+  const SignalsWait until_renamed;
+  std::vector<std::unique_ptr<PartialFile>> partials;
+  for (const FileContent& file : files) {
+    partials.push_back(std::make_unique<PartialFile>(file.path, partials.size()));
+    partials.back()->Write(file.content);
+  }
+  for (const auto& partial : partials) partial->Rename();
 }
 
 void CheckWritable(const std::string& path) {

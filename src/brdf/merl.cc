@@ -133,12 +133,14 @@ MerlBrdf MerlBrdf::Tabulate(const Brdf& source) {
   return MerlBrdf(std::move(planes));
 }
 
-void MerlBrdf::Write(const std::string& path) const {
+std::string MerlBrdf::FileBytes() const {
   std::string bytes(kFileBytes, '\0');
   std::memcpy(bytes.data(), kDimensions.data(), kHeaderBytes);
   std::memcpy(bytes.data() + kHeaderBytes, planes_.data(), kFileBytes - kHeaderBytes);
-  WriteFile(path, bytes);
+  return bytes;
 }
+
+void MerlBrdf::Write(const std::string& path) const { WriteFile(path, FileBytes()); }
 
 void MerlBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                  std::span<Rgb> values) const {

@@ -8,6 +8,7 @@ namespace pbnbrdf::cli {
 Command FitCommand();
 Command EvalCommand();
 Command TabulateCommand();
+Command ExportCommand();
 Command ValuesCommand();
 Command InfoCommand();
 

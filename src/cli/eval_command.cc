@@ -9,7 +9,6 @@
 #include "report.h"
 #include "shared_flags.h"
 
-DEFINE_string(fit, "", "fitted network (.safetensors, or an NBRDF: .h5, fc1.npy)");
 DEFINE_bool(json, false, "print one JSON object");
 DEFINE_uint64(eval_samples, 200000, "held-out samples");
 DEFINE_uint64(eval_seed, 1, "of the held-out samples");

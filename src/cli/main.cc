@@ -13,8 +13,9 @@
 namespace pbnbrdf::cli {
 namespace {
 
-std::array<Command, 5> Commands() {
-  return {FitCommand(), EvalCommand(), TabulateCommand(), ValuesCommand(), InfoCommand()};
+std::array<Command, 6> Commands() {
+  return {FitCommand(),      EvalCommand(),   ExportCommand(),
+          TabulateCommand(), ValuesCommand(), InfoCommand()};
 }
 
 std::string Overview() {

@@ -11,6 +11,7 @@
 
 DECLARE_string(material);
 DECLARE_double(scale_to_albedo);
+DECLARE_string(fit);
 DECLARE_string(out);
 
 namespace pbnbrdf::cli {

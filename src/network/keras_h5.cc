@@ -7,10 +7,9 @@
 #include <bit>
 #include <cstring>
 #include <iterator>
-#include <mutex>
 #include <string_view>
-#include <utility>
 
+#include "hdf5_handles.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/network/network_shape.h"
@@ -23,53 +22,10 @@ static_assert(std::endian::native == std::endian::little, "HDF5 files are little
 constexpr std::uint64_t kFreeBlock = 16;  // bytes of a local heap's smallest free block
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
-// While it lives, HDF5 doesn't print its errors.
-class QuietHdf5 {
- public:
-  QuietHdf5() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  QuietHdf5(const QuietHdf5&) = delete;
-  QuietHdf5& operator=(const QuietHdf5&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
-// An HDF5 identifier, closed when it goes; negative if opening failed.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(Handle&& other) : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&&) = delete;
-
-  hid_t get() const { return id_; }
-  explicit operator bool() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-// What HDF5 says about its last failure, the cause rather than its consequences.
-std::string Reason() {
-  std::string reason;
-  const auto take_first = [](unsigned n, const H5E_error2_t* error, void* text) -> herr_t {
-    if (n == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
-    return 0;
-  };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &reason);
-  return reason.empty() ? "no reason given" : reason;
-}
+using Handle = Hdf5Handle;
 
 [[noreturn]] void FailDamaged(const std::string& place) {
-  Fail(place, ": truncated or damaged HDF5 file (", Reason(), "); copy it again");
+  Fail(place, ": truncated or damaged HDF5 file (", Hdf5Reason(), "); copy it again");
 }
 
 std::uint64_t LoadUint64(std::string_view bytes, std::size_t at) {
@@ -214,11 +170,7 @@ std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
   const std::string bytes = ReadFile(path, kLargestWeightFile);
   CheckSuperblock(path, bytes);
   CheckHeaps(path, bytes);
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
-  // Otherwise HDF5 may say at the end of the program that it couldn't let go of a damaged file.
-  H5dont_atexit();
-  const QuietHdf5 quiet;
+  const Hdf5Turn turn;
   const Handle access = ImageAccess(bytes);
   // HDF5 wants a name that no file has: there is none below a regular file.
   const std::string image = path + "/image";

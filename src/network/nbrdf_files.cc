@@ -97,6 +97,35 @@ void AppendBlock(const Layer& layer, std::vector<double>* weights) {
   }
 }
 
+// The reverse of AppendBlock, for all layers.
+std::vector<KerasDenseLayer> DenseLayers(const NeuralBrdf& network) {
+  const NetworkShape& shape = network.shape();
+  std::vector<KerasDenseLayer> layers;
+  for (int l = 0; l < shape.num_layers(); ++l) {
+    const int in = shape.in(l), out = shape.out(l);
+    const double* block = network.weights().data() + shape.offset(l);
+    KerasDenseLayer layer = {StrCat("dense_", l + 1), {{in, out}, {}}, {{out}, {}}};
+    for (int i = 0; i < in; ++i) {
+      for (int o = 0; o < out; ++o) layer.kernel.values.push_back(block[o * (in + 1) + i]);
+    }
+    for (int o = 0; o < out; ++o) layer.bias.values.push_back(block[o * (in + 1) + in]);
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+void CheckIsNbrdf(const NeuralBrdf& network) {
+  const NetworkShape& shape = network.shape();
+  if (shape.encoding() != Encoding::kCartesian || shape.activation() != Activation::kRelu) {
+    Fail("an NBRDF network has relu units behind the cartesian encoding, this one is ",
+         NameOf(kActivations, shape.activation()), ", ", NameOf(kEncodings, shape.encoding()),
+         "; fit with --encoding=cartesian --activation=relu");
+  }
+  for (double weight : network.weights()) {
+    if (!std::isfinite(static_cast<float>(weight))) Fail("weight ", weight, " is beyond float32");
+  }
+}
+
 }  // namespace
 
 bool IsNbrdfFile(const std::string& path) { return IsKeras(path) || path.ends_with(".npy"); }
@@ -114,6 +143,27 @@ NeuralBrdf ReadNbrdf(const std::string& path) {
   } catch (const Error& error) {
     Fail(path, ": ", error.what());
   }
+}
+
+std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path) {
+  CheckIsNbrdf(network);
+  const std::vector<KerasDenseLayer> layers = DenseLayers(network);
+  if (IsKeras(path)) return {{path, KerasH5Bytes(layers)}};
+  if (!path.ends_with(kFirstNpy)) {
+    Fail(path, ": name the first layer's file, ...", kFirstNpy,
+         "; fc2, fc3, b1, b2 and b3 are written beside it");
+  }
+  if (layers.size() != kNpyLayers) {
+    Fail("the NumPy files hold ", kNpyLayers, " layers, a ", network.shape().Description(),
+         " network has ", layers.size());
+  }
+  const std::string base = path.substr(0, path.size() - kFirstNpy.size());
+  std::vector<FileContent> files;
+  for (int k = 1; k <= kNpyLayers; ++k) {
+    files.push_back({StrCat(base, "fc", k, ".npy"), NpyBytes(layers[k - 1].kernel)});
+    files.push_back({StrCat(base, "b", k, ".npy"), NpyBytes(layers[k - 1].bias)});
+  }
+  return files;
 }
 
 }  // namespace pbnbrdf

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/network/batched_mlp.h"
 #include "pbnbrdf/network/nbrdf_files.h"
 #include "pbnbrdf/network/safetensors.h"
@@ -99,7 +100,7 @@ NeuralBrdf NeuralBrdf::Read(const std::string& path) {
   return NeuralBrdf(shape, std::move(weights), file.metadata);
 }
 
-void NeuralBrdf::Write(const std::string& path) const {
+std::string NeuralBrdf::Serialized() const {
   SafetensorsFile file;
   file.metadata = metadata_;
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
@@ -113,8 +114,10 @@ void NeuralBrdf::Write(const std::string& path) const {
     file.tensors[WeightName(layer)] = std::move(w);
     file.tensors[BiasName(layer)] = std::move(b);
   }
-  WriteSafetensors(path, file);
+  return SafetensorsBytes(file);
 }
+
+void NeuralBrdf::Write(const std::string& path) const { WriteFile(path, Serialized()); }
 
 void NeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                    std::span<Rgb> values) const {

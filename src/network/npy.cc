@@ -124,4 +124,24 @@ Tensor ReadNpy(const std::string& path) {
   return tensor;
 }
 
+std::string NpyBytes(const Tensor& tensor) {
+  constexpr std::size_t kAlignment = 64;
+  std::string extents;
+  for (std::int64_t extent : tensor.shape) extents += StrCat(extent, ", ");
+  if (tensor.shape.size() > 1) extents.resize(extents.size() - 2);
+  std::string header =
+      StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (", Trim(extents), "), }");
+  const std::size_t begin = kMagic.size() + 2 + sizeof(std::uint16_t);
+  while ((begin + header.size() + 1) % kAlignment != 0) header += ' ';
+  header += '\n';
+  const std::vector<float> elements(tensor.values.begin(), tensor.values.end());
+  const auto length = static_cast<std::uint16_t>(header.size());
+  std::string bytes(kMagic);
+  bytes.append({'\x01', '\x00'});
+  bytes.append(reinterpret_cast<const char*>(&length), sizeof(length));
+  bytes += header;
+  return bytes.append(reinterpret_cast<const char*>(elements.data()),
+                      elements.size() * sizeof(float));
+}
+
 }  // namespace pbnbrdf

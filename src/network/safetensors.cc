@@ -108,7 +108,7 @@ SafetensorsFile ReadSafetensors(const std::string& path) {
   return file;
 }
 
-void WriteSafetensors(const std::string& path, const SafetensorsFile& file) {
+std::string SafetensorsBytes(const SafetensorsFile& file) {
   json header = json::object();
   if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
   std::string data;
@@ -125,7 +125,11 @@ void WriteSafetensors(const std::string& path, const SafetensorsFile& file) {
   const std::uint64_t header_size = text.size();
   std::string bytes(kLengthBytes, '\0');
   std::memcpy(bytes.data(), &header_size, kLengthBytes);
-  WriteFile(path, bytes + text + data);
+  return bytes + text + data;
+}
+
+void WriteSafetensors(const std::string& path, const SafetensorsFile& file) {
+  WriteFile(path, SafetensorsBytes(file));
 }
 
 }  // namespace pbnbrdf

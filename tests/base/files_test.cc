@@ -39,6 +39,35 @@ TEST(Files, AFailedWriteLeavesNothing) {
   EXPECT_EQ(folder.file_count(), 1u);
 }
 
+TEST(Files, SeveralFilesAreReplacedTogetherOrNot) {
+  TemporaryFolder folder;
+  WriteFiles({{folder / "a", "1"}, {folder / "b", "2"}});
+  EXPECT_EQ(ReadFile(folder / "a", 9), "1");
+  EXPECT_EQ(ReadFile(folder / "b", 9), "2");
+  EXPECT_THAT(ErrorOf([&] {
+                WriteFiles({{folder / "a", "3"}, {folder / "no/b", "4"}});
+              }),
+              HasSubstr("no/b: cannot write: no folder"));
+  const std::string long_name(300, 'x');  // found out when it is renamed only
+  std::filesystem::create_directory(folder / "c");
+  mkfifo((folder / "pipe").c_str(), 0600);
+  EXPECT_THAT(ErrorOf([&] {
+                WriteFiles({{folder / "a", "3"}, {folder / "c", "4"}});
+              }),
+              HasSubstr("c: cannot write: is a folder"));
+  EXPECT_THAT(ErrorOf([&] {
+                WriteFiles({{folder / "a", "3"}, {folder / "pipe", "4"}});
+              }),
+              HasSubstr("pipe: cannot write: not a regular file"));
+  EXPECT_EQ(ReadFile(folder / "a", 9), "1");
+  EXPECT_THAT(ErrorOf([&] {
+                WriteFiles({{folder / long_name, "3"}, {folder / "a", "4"}});
+              }),
+              HasSubstr("cannot write: File name too long"));
+  EXPECT_EQ(ReadFile(folder / "a", 9), "1");
+  EXPECT_EQ(folder.file_count(), 4u);
+}
+
 TEST(Files, APipeStaysOne) {
   TemporaryFolder folder;
   const std::string path = folder / "pipe";

@@ -62,7 +62,7 @@ class Cli : public testing::Test {
 TEST_F(Cli, HelpTeaches) {
   const Result overview = Run("--help");
   EXPECT_EQ(overview.status, 0);
-  for (const char* command : {"fit", "eval", "tabulate", "values", "info"}) {
+  for (const char* command : {"fit", "eval", "export", "tabulate", "values", "info"}) {
     EXPECT_THAT(overview.out, HasSubstr(StrCat("  ", command, " ")));
     const Result help = Run(StrCat(command, " --help"));
     EXPECT_EQ(help.status, 0);
@@ -84,7 +84,7 @@ TEST_F(Cli, HelpNamesEveryChoice) {
 
 TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError("", 2, "no command given: fit | eval");
-  ExpectError("fitt", 2, "'fitt' is not a command: fit | eval | tabulate | values | info");
+  ExpectError("fitt", 2, "'fitt' is not a command: fit | eval | export | tabulate | values | info");
   ExpectError("fit", 2, "--material is required");
   ExpectError("fit --material=builtin:satin-gold", 2, "--out is required");
   const std::string fit = "fit --material=builtin:satin-gold --out=" + Path("out");
@@ -230,6 +230,58 @@ TEST_F(Cli, TheReferencePathFitsToo) {
   const Result fit = Run("fit --material=builtin:satin-gold --jacobian=autodiff --terms=log" +
                          kQuick + "--samples=50 --out=" + Path("a.safetensors"));
   EXPECT_EQ(fit.status, 0) << fit.err;
+}
+
+TEST_F(Cli, ExportWritesEveryFormat) {
+  const std::string network = Path("a.safetensors");
+  ASSERT_EQ(Run("fit --material=builtin:satin-gold --encoding=cartesian --activation=relu" +
+                kQuick + "--hidden=5,4 --out=" + network)
+                .status,
+            0);
+  const std::map<std::string, std::string> files = {
+      {"npy", "x_fc1.npy"}, {"h5", "x.h5"},     {"merl", "x.binary"}, {"csv", "x.csv"},
+      {"c", "x.h"},         {"glsl", "x.glsl"}, {"mitsuba", "x.py"},  {"onnx", "x.onnx"}};
+  const std::string help = Run("export --help").out;
+  for (const auto& [format, file] : files) {
+    EXPECT_THAT(help, HasSubstr("  " + format + " "));
+    const Result result =
+        Run("export --fit=" + network + " --format=" + format + " --out=" + Path(file));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(std::filesystem::exists(Path(file))) << format;
+  }
+  EXPECT_THAT(help, HasSubstr("npy | h5 | merl | csv | c | glsl | mitsuba | onnx"));
+  EXPECT_EQ(NeuralBrdf::Read(Path("x_weights.safetensors")).weights(),
+            NeuralBrdf::Read(network).weights());
+  // The CSV names the directions that its values are at.
+  const Result values =
+      Run("values --material=" + network + " --directions=" + Path("x.csv") + " --out=-");
+  const std::vector<std::string> row = Split(Split(values.out, '\n')[1000], ',');
+  ASSERT_EQ(row.size(), 10u);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(ParseNumber("written", row[4 + c]), ParseNumber("computed", row[7 + c]));
+  }
+  EXPECT_THAT(Run("export --fit=" + network + " --format=c --name=paint --out=-").out,
+              HasSubstr("paint_eval("));
+}
+
+TEST_F(Cli, ExportsThatCannotBeAreNamed) {
+  const std::string network = Path("a.safetensors");
+  ASSERT_EQ(Run("fit --material=builtin:satin-gold" + kQuick + "--out=" + network).status, 0);
+  const std::string to = "export --fit=" + network + " --out=" + Path("out");
+  ExpectError(to, 2, "--format is required");
+  ExpectError("export --format=c --out=" + Path("out"), 2, "--fit is required");
+  ExpectError("export --fit=x --format=c", 2, "--out is required");
+  ExpectError(to + " --format=obj", 2,
+              "--format=obj is not one of npy | h5 | merl | csv | c | glsl");
+  ExpectError(to + " --format=c --name=a-b", 1, "a.safetensors, exported as c: name=a-b is not");
+  ExpectError(
+      "export --format=npy --fit=" + network + " --out=" + Path("x_fc1.npy"), 1,
+      "a.safetensors, exported as npy: an NBRDF network has relu units behind the cartesian "
+      "encoding, this one is tanh, merl");
+  ExpectError("export --format=c --fit=" + Path("none.safetensors") + " --out=" + Path("out"), 1,
+              "none.safetensors: no such file");
+  ExpectError("export --format=mitsuba --fit=" + network + " --out=" + Path("none/x.py"), 1,
+              "x.py: cannot write: no folder");
 }
 
 TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {

@@ -22,6 +22,19 @@ TEST(Npy, ReadsBothPrecisionsAndVersions) {
   }
 }
 
+TEST(Npy, WhatIsWrittenIsReadAndBeginsAtAMultipleOf64) {
+  TemporaryFolder folder;
+  const std::string path = folder / "x.npy";
+  for (const Tensor& tensor :
+       {Tensor{{2, 3}, {1.5, -2.0, 0.25, 4.0, 0.0, -6.0}}, Tensor{{2}, {1, 2}}}) {
+    const std::string bytes = NpyBytes(tensor);
+    EXPECT_EQ((bytes.size() - tensor.values.size() * sizeof(float)) % 64, 0u);
+    WriteBytes(path, bytes);
+    EXPECT_EQ(ReadNpy(path).shape, tensor.shape);
+    EXPECT_EQ(ReadNpy(path).values, tensor.values);
+  }
+}
+
 TEST(Npy, FortranOrderIsUndone) {
   TemporaryFolder folder;
   const std::string path = folder / "x.npy";

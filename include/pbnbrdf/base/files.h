@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pbnbrdf {
 
@@ -17,6 +18,14 @@ std::string ReadFile(const std::string& path, std::uintmax_t limit);
 // either its old content or all of the new; a link, device or pipe stays one. "-" is standard output.
 // Throws Error; the temporary file is removed.
 void WriteFile(const std::string& path, std::string_view content);
+
+struct FileContent {
+  std::string path, content;
+};
+
+// Several regular files, in one folder or more: none is replaced before the new content of all is
+// on the disk. Throws Error; the temporary files are removed. One file may be what WriteFile takes.
+void WriteFiles(const std::vector<FileContent>& files);
 
 // Throws Error unless WriteFile(path, ...) has a folder to write to that grants it: asked before a
 // long computation, so that its result isn't lost.

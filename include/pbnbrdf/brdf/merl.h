@@ -35,6 +35,8 @@ class MerlBrdf final : public Brdf {
   // Error if it is anisotropic: a table has no phi_h.
   static MerlBrdf Tabulate(const Brdf& source);
 
+  std::string FileBytes() const;
+
   // Throws Error if the file can't be written.
   void Write(const std::string& path) const;
 

@@ -12,7 +12,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
@@ -26,5 +28,10 @@ bool IsNbrdfFile(const std::string& path);
 // missing, larger than kLargestWeightFile, damaged, of another shape or type, or holds a value that
 // isn't finite.
 NeuralBrdf ReadNbrdf(const std::string& path);
+
+// What ReadNbrdf reads from the same name, as float32: one Keras file or six NumPy files. Throws
+// Error if the network isn't one of relu units behind the cartesian encoding, if a weight is beyond
+// float32, or if NumPy files are asked for and there are not two hidden layers.
+std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path);
 
 }  // namespace pbnbrdf

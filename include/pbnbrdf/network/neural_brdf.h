@@ -24,6 +24,9 @@ class NeuralBrdf final : public Brdf {
   // with ".h5", ".hdf5" or ".npy", a published network (nbrdf_files.h). Throws Error.
   static NeuralBrdf Read(const std::string& path);
 
+  // The bytes of the file that Write writes.
+  std::string Serialized() const;
+
   // Tensors of double precision. Throws Error.
   void Write(const std::string& path) const;
 

@@ -13,4 +13,8 @@ namespace pbnbrdf {
 // says.
 Tensor ReadNpy(const std::string& path);
 
+// The bytes of a file that holds the tensor as '<f4' in C order, version 1, the elements at a
+// multiple of 64 as numpy.save puts them. Values are rounded to float32.
+std::string NpyBytes(const Tensor& tensor);
+
 }  // namespace pbnbrdf

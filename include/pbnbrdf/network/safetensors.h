@@ -19,7 +19,10 @@ struct SafetensorsFile {
 // the format prescribes, the header and the file's length disagree, or a value isn't finite.
 SafetensorsFile ReadSafetensors(const std::string& path);
 
-// Writes F64 tensors. Throws Error.
+// The bytes of a file of F64 tensors.
+std::string SafetensorsBytes(const SafetensorsFile& file);
+
+// Writes them. Throws Error.
 void WriteSafetensors(const std::string& path, const SafetensorsFile& file);
 
 }  // namespace pbnbrdf

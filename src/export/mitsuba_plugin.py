@@ -1,0 +1,230 @@
+"""A BSDF for Mitsuba 3, "pbnbrdf": a neural BRDF that pbnbrdf fitted to a material.
+
+    import mitsuba
+    mitsuba.set_variant("llvm_ad_rgb")      # or scalar_rgb, cuda_ad_rgb, ..._mono
+    import gold                             # this file: registers the plugin for that variant
+    bsdf = mitsuba.load_dict({"type": "pbnbrdf"})
+
+Parameters, all optional:
+    filename  a .safetensors file of pbnbrdf instead of the one beside this file
+    alpha     roughness of the GGX lobe that directions are drawn from, (0, 1]
+    glossy    how much of the draws it gets, 0 to 1; the rest is cosine distributed
+
+The two are set for the network beside this file; others make another's image noisier, not wrong.
+Reflects on the side of the normal only: wrap it in "twosided" for both. RGB and monochromatic
+modes. eval() includes the cosine, as Mitsuba has it.
+LLVM variants need LLVM 16 or later: of an arc tangent 15 makes no machine code for AVX-512.
+"""
+import array
+import json
+import os
+import struct
+import sys
+
+import drjit as dr
+import mitsuba as mi
+
+NETWORK = os.fsdecode(b"network.safetensors")
+ALPHA = 0.5
+GLOSSY = 0.5
+
+LARGEST_VALUE = 1e12  # 1/sr; narrower lobes than any measurement resolves
+
+
+def read_safetensors(path):
+    """The metadata and, by name, the (shape, values) of the tensors."""
+    with open(path, "rb") as file:
+        data = file.read()
+    if len(data) < 8:
+        raise ValueError(f"{path}: not a safetensors file")
+    begin = 8 + struct.unpack("<Q", data[:8])[0]
+    header = json.loads(data[8:begin])
+    metadata = header.pop("__metadata__", {})
+    tensors = {}
+    for name, entry in header.items():
+        first, last = entry["data_offsets"]
+        values = array.array({"F64": "d", "F32": "f"}[entry["dtype"]])
+        values.frombytes(data[begin + first:begin + last])
+        if sys.byteorder == "big":
+            values.byteswap()
+        tensors[name] = (entry["shape"], values)
+    return metadata, tensors
+
+
+class Network:
+    """f(wi, wo) = max(0, exp(z) - 1), z the network's output at the encoded directions."""
+
+    def __init__(self, path):
+        metadata, tensors = read_safetensors(path)
+        if metadata.get("format") != "pbnbrdf" or metadata.get("output") != "expm1":
+            raise ValueError(f"{path}: not a network of pbnbrdf")
+        self.encoding = metadata["encoding"]
+        self.encode = ENCODERS[self.encoding]
+        activations = {"tanh": dr.tanh, "relu": lambda x: dr.maximum(x, 0.0)}
+        self.activate = activations[metadata["activation"]]
+        self.layers = []  # lists of (row of W, bias)
+        while f"fc{len(self.layers) + 1}.weight" in tensors:
+            name = f"fc{len(self.layers) + 1}"
+            (rows, columns), weights = tensors[name + ".weight"]
+            biases = tensors[name + ".bias"][1]
+            self.layers.append([(list(weights[r * columns:(r + 1) * columns]), biases[r])
+                                for r in range(rows)])
+
+    def __call__(self, wi, wo):
+        """Linear RGB in 1/sr. wi to the light, wo to the viewer, both above the horizon."""
+        x = self.encode(HalfDiff(wi, wo))
+        for number, layer in enumerate(self.layers):
+            y = []
+            for row, bias in layer:
+                total = mi.Float(bias)
+                for weight, value in zip(row, x):
+                    total = dr.fma(value, weight, total)
+                y.append(total)
+            x = y if number + 1 == len(self.layers) else [self.activate(value) for value in y]
+        return mi.Color3f(*[reflectance(z) for z in x])
+
+
+def reflectance(z):
+    """expm1(z), as 2 sinh(z/2) exp(z/2): no digits are lost near 0."""
+    half = dr.select(z > 0.0, 0.5 * dr.minimum(z, 60.0), 0.0)
+    return dr.minimum(2.0 * dr.sinh(half) * dr.exp(half), LARGEST_VALUE)
+
+
+class HalfDiff:
+    """The half vector and the difference vector in its frame (Rusinkiewicz 1998)."""
+
+    def __init__(self, wi, wo):
+        total, half = wi + wo, 0.5 * (wi - wo)
+        squared = total.x * total.x + total.y * total.y
+        tangential, length = dr.sqrt(squared), dr.sqrt(squared + total.z * total.z)
+        off_pole = tangential > 1e-18
+        per_tangential, per_length = dr.maximum(tangential, 1e-18), dr.maximum(length, 1e-18)
+        self.cos_phi = dr.select(off_pole, total.x / per_tangential, 1.0)
+        self.sin_phi = dr.select(off_pole, total.y / per_tangential, 0.0)
+        self.sin_h, self.cos_h = tangential / per_length, total.z / per_length
+        self.theta_h = dr.atan2(tangential, total.z)
+        radial = half.x * self.cos_phi + half.y * self.sin_phi
+        self.dx = radial * self.cos_h - half.z * self.sin_h
+        self.dy = half.y * self.cos_phi - half.x * self.sin_phi
+        self.dz = 0.5 * length
+
+
+def doubled(x, y):
+    return x * x - y * y, 2.0 * x * y
+
+
+def scales(v):
+    """theta_h on two scales."""
+    return dr.sqrt(v.theta_h * (2.0 / dr.pi)), dr.log(v.theta_h + 1e-3) / 3.0
+
+
+def row_bend(root):
+    row = 90.0 * root
+    u = row - dr.floor(row)
+    return 4.0 * u * (1.0 - u)
+
+
+def cartesian(v):
+    return [v.sin_h, 0.0, v.cos_h, v.dx, v.dy, v.dz]
+
+
+def reciprocal(v):
+    x, y = doubled(v.dx, v.dy)
+    s = dr.maximum(dr.sqrt(v.dx * v.dx + v.dy * v.dy), 1e-18)
+    return [v.sin_h, 0.0, v.cos_h, x / s, y / s, v.dz]
+
+
+def multiscale(v):
+    root, log = scales(v)
+    return [v.sin_h, root, log, *doubled(v.dx, v.dy), v.dz]
+
+
+def merl(v):
+    root, log = scales(v)
+    return [row_bend(root), root, log, *doubled(v.dx, v.dy), v.dz]
+
+
+def bilateral(v):
+    root, log = scales(v)
+    return [row_bend(root), root, log, doubled(v.dx, v.dy)[0], v.sin_h, v.dz]
+
+
+def anisotropic(v):
+    root, log = scales(v)
+    r = root * dr.sqrt(root)
+    tx = v.dx * v.cos_phi - v.dy * v.sin_phi
+    ty = v.dx * v.sin_phi + v.dy * v.cos_phi
+    return [r * v.cos_phi, r * v.sin_phi, log, *doubled(tx, ty), v.dz]
+
+
+ENCODERS = {"cartesian": cartesian, "reciprocal": reciprocal, "multiscale": multiscale,
+            "merl": merl, "bilateral": bilateral, "anisotropic": anisotropic}
+
+
+class NeuralBSDF(mi.BSDF):
+    def __init__(self, props):
+        mi.BSDF.__init__(self, props)
+        if mi.is_spectral or mi.is_polarized:
+            raise RuntimeError("pbnbrdf: use a variant that is RGB or monochromatic, not polarized")
+        if props.has_property("filename"):
+            self.path = str(mi.file_resolver().resolve(props["filename"]))
+        else:
+            self.path = os.path.join(os.path.dirname(os.path.abspath(__file__)), NETWORK)
+        self.network = Network(self.path)
+        self.alpha = float(props.get("alpha", ALPHA))
+        self.glossy = float(props.get("glossy", GLOSSY))
+        if not (0.0 < self.alpha <= 1.0 and 0.0 <= self.glossy <= 1.0):
+            raise ValueError("pbnbrdf: alpha must be in (0, 1], glossy in [0, 1]")
+        # The lobe serves to draw directions only; the material is one component.
+        flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
+        if self.network.encoding == "anisotropic":
+            flags |= mi.BSDFFlags.Anisotropic
+        self.m_components = [flags]
+        self.m_flags = flags
+
+    def lobe(self):
+        return mi.MicrofacetDistribution(mi.MicrofacetType.GGX, self.alpha, True)
+
+    def is_active(self, ctx, si, wo, active):
+        enabled = ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
+        cos_theta = mi.Frame3f.cos_theta
+        return active & enabled & (cos_theta(si.wi) > 0.0) & (cos_theta(wo) > 0.0)
+
+    def eval(self, ctx, si, wo, active=True):
+        # si.wi points to the viewer. Importance travels the other way, which only networks that
+        # aren't reciprocal can tell.
+        light, viewer = (wo, si.wi) if ctx.mode == mi.TransportMode.Radiance else (si.wi, wo)
+        value = self.network(light, viewer) * mi.Frame3f.cos_theta(wo)
+        if mi.is_monochromatic:
+            value = mi.Color1f(mi.luminance(value))
+        return dr.select(self.is_active(ctx, si, wo, active), value, 0.0)
+
+    def pdf(self, ctx, si, wo, active=True):
+        half = dr.normalize(si.wi + wo)
+        glossy = self.lobe().pdf(si.wi, half) / (4.0 * dr.dot(wo, half))
+        cosine = mi.warp.square_to_cosine_hemisphere_pdf(wo)
+        mixture = self.glossy * glossy + (1.0 - self.glossy) * cosine
+        return dr.select(self.is_active(ctx, si, wo, active), mixture, 0.0)
+
+    def eval_pdf(self, ctx, si, wo, active=True):
+        return self.eval(ctx, si, wo, active), self.pdf(ctx, si, wo, active)
+
+    def sample(self, ctx, si, sample1, sample2, active=True):
+        normal, _ = self.lobe().sample(si.wi, sample2)
+        wo = dr.select(sample1 < self.glossy, mi.reflect(si.wi, normal),
+                       mi.warp.square_to_cosine_hemisphere(sample2))
+        value, pdf = self.eval_pdf(ctx, si, wo, active)
+        bs = dr.zeros(mi.BSDFSample3f)
+        bs.wo = wo
+        bs.pdf = pdf
+        bs.eta = 1.0
+        bs.sampled_type = mi.UInt32(+mi.BSDFFlags.GlossyReflection)
+        bs.sampled_component = mi.UInt32(0)
+        drawn = self.is_active(ctx, si, wo, active) & (pdf > 0.0)
+        return bs, dr.select(drawn, value / dr.select(drawn, pdf, 1.0), 0.0)
+
+    def to_string(self):
+        return f"NeuralBSDF[{self.path}, alpha={self.alpha}, glossy={self.glossy}]"
+
+
+mi.register_bsdf("pbnbrdf", lambda props: NeuralBSDF(props))
