@@ -13,6 +13,6 @@ forbid() {  # forbid PATTERN FOLDER...
 forbid 'gflags|glog' include src/base src/kernels src/brdf src/network src/problem src/solve src/metrics
 forbid 'ceres|Eigen' include/pbnbrdf/base include/pbnbrdf/kernels include/pbnbrdf/brdf \
   include/pbnbrdf/network include/pbnbrdf/metrics src/base src/kernels src/brdf src/network src/metrics
-forbid 'nlohmann' include src/base src/kernels src/brdf src/problem src/solve src/metrics
+forbid 'nlohmann' include src/base src/kernels src/problem src/solve src/metrics
 forbid 'hdf5|H5' include src/base src/kernels src/brdf src/problem src/solve src/metrics src/cli
 exit $status
