@@ -10,9 +10,10 @@ forbid() {  # forbid PATTERN FOLDER...
     status=1
   fi
 }
-forbid 'gflags|glog' include src/base src/kernels src/brdf src/network src/problem src/solve src/metrics
+forbid 'gflags|glog' include src/base src/kernels src/brdf src/models src/network src/problem src/solve \
+  src/metrics
 forbid 'ceres|Eigen' include/pbnbrdf/base include/pbnbrdf/kernels include/pbnbrdf/brdf \
-  include/pbnbrdf/network include/pbnbrdf/metrics src/base src/kernels src/brdf src/network src/metrics
-forbid 'nlohmann' include src/base src/kernels src/problem src/solve src/metrics
-forbid 'hdf5|H5' include src/base src/kernels src/brdf src/problem src/solve src/metrics src/cli
+  include/pbnbrdf/models include/pbnbrdf/network include/pbnbrdf/metrics src/base src/kernels src/brdf src/network src/metrics
+forbid 'nlohmann' include src/base src/kernels src/models src/problem src/solve src/metrics
+forbid 'hdf5|H5' include src/base src/kernels src/brdf src/models src/problem src/solve src/metrics src/cli
 exit $status

@@ -90,6 +90,22 @@ void SetScalars(const std::string& name, const std::vector<double>& values,
   }
 }
 
+template <typename Format>
+std::string TextOf(const AnalyticModel& model,
+                   const std::vector<std::pair<std::string, std::vector<double>>>& named,
+                   Format format) {
+  std::string text;
+  for (const auto& [name, values] : named) {
+    text += (text.empty() ? "" : ",") + name + "=";
+    const bool all_equal = std::count(values.begin(), values.end(), values[0]) ==
+                           static_cast<std::ptrdiff_t>(values.size());
+    for (std::size_t c = 0; c < (all_equal ? 1 : values.size()); ++c) {
+      text += (c == 0 ? "" : "/") + format(values[c]);
+    }
+  }
+  return StrCat(model.name, ":", text);
+}
+
 }  // namespace
 
 int AnalyticModel::BaseSize() const { return SizeOfTable(base); }
@@ -224,19 +240,13 @@ std::vector<std::pair<std::string, std::vector<double>>> AnalyticBrdf::NamedValu
 }
 
 std::string AnalyticBrdf::Text() const {
-  std::string text;
-  for (const auto& [name, values] : NamedValues()) {
-    text += (text.empty() ? "" : ",") + name + "=";
-    const bool all_equal = std::count(values.begin(), values.end(), values[0]) ==
-                           static_cast<std::ptrdiff_t>(values.size());
-    for (std::size_t c = 0; c < (all_equal ? 1 : values.size()); ++c) {
-      text += (c == 0 ? "" : "/") + FormatNumber(values[c]);
-    }
-  }
-  return StrCat(model_->name, ":", text);
+  return TextOf(*model_, NamedValues(), [](double value) { return FormatNumber(value); });
 }
 
-std::string AnalyticBrdf::Description() const { return StrCat(Text(), " (", model_->paper, ")"); }
+std::string AnalyticBrdf::Description() const {
+  const auto rounded = [](double value) { return StrCat(value); };
+  return StrCat(TextOf(*model_, NamedValues(), rounded), " (", model_->paper, ")");
+}
 
 Rgb AnalyticBrdf::Value(const DirectionPair& pair) const {
   return model_->evaluate(ReflectionGeometry(pair), parameters_.data(), lobes_);

@@ -19,10 +19,10 @@ struct AbcFormula {
   static constexpr std::string_view kName = "abc", kPaper = "Low et al. 2012, microfacets";
   static constexpr std::array<ModelParameter, 1> kBase = {kDiffuseAlbedo};
   static constexpr std::array<ModelParameter, 4> kLobe = {
-      {{"rho_s", 3, 1.0, 0.0, 1e9, "A: height of the lobe, 1/sr"},
+      {{"rho_s", 3, 1.0, 0.0, 1e9, "A: height of the lobe, 1/sr", FitRole::kScale},
        kNormalReflectance,
-       {"b", 1, 100.0, 1e-3, 1e9, "B: inverse width of the lobe", true},
-       {"c", 1, 2.0, 0.01, 100.0, "C: how fast its tail falls", true}}};
+       {"b", 1, 100.0, 1e-3, 1e9, "B: inverse width of the lobe", FitRole::kWidth, 1e5, 4.0, true},
+       {"c", 1, 2.0, 0.01, 100.0, "C: how fast its tail falls", FitRole::kShape, 0.0, 0.0, true}}};
 
   template <typename T>
   static void AddBase(const ReflectionGeometry&, const T* base, T* f) {

@@ -20,8 +20,14 @@ struct LafortuneFormula {
   static constexpr std::array<ModelParameter, 5> kLobe = {
       {kSpecularScale,
        {"c_x", 1, -1.0, -2.0, 2.0, "factor of wi.x wo.x"},
-       {"c_y", 1, -1.0, -2.0, 2.0, "factor of wi.y wo.y", false, WhenIsotropic::kAsPrevious,
-        "c_xy"},
+       {.name = "c_y",
+        .size = 1,
+        .initial = -1.0,
+        .lower = -2.0,
+        .upper = 2.0,
+        .meaning = "factor of wi.y wo.y",
+        .when_isotropic = WhenIsotropic::kAsPrevious,
+        .pair_name = "c_xy"},
        {"c_z", 1, 1.0, -2.0, 2.0, "factor of wi.z wo.z"},
        kExponent}};
 

@@ -29,13 +29,23 @@ enum class WhenIsotropic {
   kZero,
 };
 
+// What a fit makes of a parameter when it begins.
+enum class FitRole {
+  kShape,    // its initial value
+  kDiffuse,  // a colour: that of the darker half of the material
+  kScale,    // a colour: what gives the lobe the brightness of the highlight
+  kWidth,    // starts have it from `narrow` to `wide`, in equal ratios
+};
+
 struct ModelParameter {
   std::string_view name;
   int size;             // 3: linear R, G, B; 1: one number
   double initial;       // where it isn't given
   double lower, upper;  // what it must lie between, inclusive
   std::string_view meaning;
-  bool logarithmic = false;  // fits search its logarithm; lower > 0
+  FitRole role = FitRole::kShape;
+  double narrow = 0.0, wide = 0.0;  // of kWidth, > 0
+  bool logarithmic = false;         // fits search its logarithm; lower > 0
   WhenIsotropic when_isotropic = WhenIsotropic::kFree;
   std::string_view pair_name = "";  // kAsPrevious: sets this one and the one before
 };
@@ -49,19 +59,44 @@ constexpr int SizeOf(const std::array<ModelParameter, N>& table) {
 }
 
 // Parameters that several formulas have.
-inline constexpr ModelParameter kDiffuseAlbedo = {"rho_d", 3, 0.0, 0.0, 10.0, "diffuse albedo"};
-inline constexpr ModelParameter kSpecularScale = {"rho_s", 3, 1.0, 0.0, 1e4, "factor of the lobe"};
+inline constexpr ModelParameter kDiffuseAlbedo = {
+    "rho_d", 3, 0.0, 0.0, 10.0, "diffuse albedo", FitRole::kDiffuse};
+inline constexpr ModelParameter kSpecularScale = {
+    "rho_s", 3, 1.0, 0.0, 1e4, "factor of the lobe", FitRole::kScale};
 inline constexpr ModelParameter kNormalReflectance = {
     "f0", 3, 1.0, 0.0, 1.0, "Schlick's reflectance at normal incidence"};
-inline constexpr ModelParameter kWidthX = {
-    "alpha_x", 1, 0.2, 1e-4, 4.0, "width of the lobe along x, a slope", true};
-inline constexpr ModelParameter kWidthY = {"alpha_y", 1,
-                                           0.2,       1e-4,
-                                           4.0,       "width of the lobe along y, a slope",
-                                           true,      WhenIsotropic::kAsPrevious,
-                                           "alpha"};
-inline constexpr ModelParameter kExponent = {"n", 1, 100.0, 0.1, 1e7, "exponent of the cosine",
-                                             true};
+inline constexpr ModelParameter kWidthX = {.name = "alpha_x",
+                                           .size = 1,
+                                           .initial = 0.2,
+                                           .lower = 1e-4,
+                                           .upper = 4.0,
+                                           .meaning = "width of the lobe along x, a slope",
+                                           .role = FitRole::kWidth,
+                                           .narrow = 0.004,
+                                           .wide = 0.6,
+                                           .logarithmic = true};
+inline constexpr ModelParameter kWidthY = {.name = "alpha_y",
+                                           .size = 1,
+                                           .initial = 0.2,
+                                           .lower = 1e-4,
+                                           .upper = 4.0,
+                                           .meaning = "width of the lobe along y, a slope",
+                                           .role = FitRole::kWidth,
+                                           .narrow = 0.004,
+                                           .wide = 0.6,
+                                           .logarithmic = true,
+                                           .when_isotropic = WhenIsotropic::kAsPrevious,
+                                           .pair_name = "alpha"};
+inline constexpr ModelParameter kExponent = {.name = "n",
+                                             .size = 1,
+                                             .initial = 100.0,
+                                             .lower = 0.1,
+                                             .upper = 1e7,
+                                             .meaning = "exponent of the cosine",
+                                             .role = FitRole::kWidth,
+                                             .narrow = 1e5,
+                                             .wide = 4.0,
+                                             .logarithmic = true};
 
 // f += value / pi for R, G, B.
 template <typename T>
