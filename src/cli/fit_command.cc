@@ -208,8 +208,8 @@ Command FitCommand() {
       std::string(kSourceNotes) +
       "\nWith --model the file holds the model, its parameters and its errors; of the flags above "
       "it\n"
-      "takes sampling, samples [6000], seed, loss_scale, starts [12], max_iterations [200] and\n"
-      "function_tolerance.\n"
+      "takes sampling, samples [6000], seed, loss_scale, starts [12], max_iterations [100] and\n"
+      "function_tolerance [1e-05].\n"
       "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
   command.flags = {MaterialFlagsAnd({"out", "summary", "trace", "quiet", "threads"})};
   for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);

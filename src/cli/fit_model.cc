@@ -66,7 +66,7 @@ AnalyticFitOptions ParseOptions() {
   options.seed = FLAGS_seed;
   options.sampling = ParseName(kSamplings, "sampling", FLAGS_sampling);
   options.loss_scale = FLAGS_loss_scale;
-  options.function_tolerance = FLAGS_function_tolerance;
+  if (IsGiven("function_tolerance")) options.function_tolerance = FLAGS_function_tolerance;
   if (IsGiven("samples")) options.samples = FLAGS_samples;
   if (IsGiven("starts")) options.starts = FLAGS_starts;
   if (IsGiven("max_iterations")) options.max_iterations = FLAGS_max_iterations;

@@ -153,7 +153,9 @@ AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
   const std::vector<BrdfSample> samples =
       DrawSamples(material, SampleSet::kTraining, options.sampling, options.samples, options.seed);
   const auto first = std::span(samples).first(std::min(samples.size(), options.first_samples));
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  const int most_threads = tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
+                                            : tbb::task_arena::automatic);
   const bool isotropic = material.IsIsotropic();
   std::vector<Candidate> at_hand;
   std::vector<double> scalars;

@@ -30,8 +30,8 @@ struct AnalyticFitOptions {
   std::size_t samples = 6000;        // >= 1, of the last stage
   std::size_t first_samples = 1000;  // >= 1, of the starts
   int starts = 12;                   // >= 1: from narrow lobes to wide ones; the best ones go on
-  int max_iterations = 200;          // >= 1, of the last stage
-  double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost
+  int max_iterations = 100;          // >= 1, of the last stage
+  double function_tolerance = 1e-5;  // stop when |cost change| < function_tolerance * cost
   std::uint64_t seed = 1;            // of the samples
   int threads = 0;                   // 0: as many as the machine has
 
