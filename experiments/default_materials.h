@@ -12,8 +12,8 @@ std::vector<std::string> BuiltinTexts();
 // "CLASS=sgd:NAME": of each class some dark, light and coloured ones.
 std::vector<std::string> SgdTexts();
 
-// A text with the path of the SGD parameters put in: "CLASS=sgd:PATH#NAME" for "CLASS=sgd:NAME". Others
-// stay as they are. Throws Error if a path is needed and empty.
+// A text with the path of the SGD parameters put in: "CLASS=sgd:PATH#NAME" for "CLASS=sgd:NAME".
+// Others stay as they are. Throws Error if a path is needed and empty.
 std::string WithSgdPath(const std::string& text, const std::string& path);
 
 }  // namespace pbnbrdf

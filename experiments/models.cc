@@ -49,8 +49,8 @@ constexpr char kUsage[] =
   models --out_dir=results --sgd=parameters.csv
   models --out_dir=results --materials=builtin:satin-gold,metal=gold.binary --models=ggx,ward
 
-The arguments are further materials. Each fit is a row of models.csv as soon as it is done; models.md
-has the tables: the best of each material, and each method over all materials of a kind of source.
+The arguments are further materials. Each fit is a row of models.csv as soon as it is done; the
+tables, in models.md, are the best of each material and each method over each kind of source.
 The built-in materials are analytic themselves (Lambert, Oren-Nayar, ward_bounded, ggx).
 )";
 

@@ -11,8 +11,8 @@ FlagGroup ModelFlags();
 // Whether --model is given. Throws UsageError if flags that only it has are given without it.
 bool FitsModel();
 
-// Fits the model to the material and writes the JSON file --out. Throws Error, and UsageError if flags
-// are given that only networks have.
+// Fits the model to the material and writes the JSON file --out. Throws Error, and UsageError if
+// flags are given that only networks have.
 int RunModelFit();
 
 }  // namespace pbnbrdf::cli

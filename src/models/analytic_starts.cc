@@ -27,8 +27,8 @@ double WidthAt(const ModelParameter& parameter, double place) {
   return parameter.narrow * std::pow(parameter.wide / parameter.narrow, place);
 }
 
-// The channel's factor by which the lobes alone, with scale 1, are as bright as the highlight beyond
-// the diffuse part.
+// The channel's factor by which the lobes alone, with scale 1, are as bright as the highlight
+// beyond the diffuse part.
 double LobeFactor(const AnalyticModel& model, int lobes, const std::vector<double>& scalars,
                   std::span<const BrdfSample> samples, int channel, double diffuse) {
   const double bright = Quantile(samples, channel, 1.0 - kBrighterPart);

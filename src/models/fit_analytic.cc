@@ -19,7 +19,7 @@
 namespace pbnbrdf {
 namespace {
 
-// Of the starts: a wide loss leads from afar, and few iterations tell which are worth going on with.
+// Of the starts: a wide loss leads from afar, and few iterations tell which are worth more.
 constexpr double kFirstLossScale = 0.03;
 constexpr int kFirstIterations = 40;
 constexpr std::size_t kMostFinalists = 2;

@@ -120,8 +120,8 @@ double DeviationOverDirections(const ImportanceSampler& sampler, const Importanc
   return ChiSquareDeviation(probabilities, counts, kDraws);
 }
 
-// Over the half vector: s = r / (1 + r), r = tan^2 theta_h / alpha^2 in the lobe's own frame, so that
-// any width fills the cells.
+// Over the half vector: s = r / (1 + r), r = tan^2 theta_h / alpha^2 in the lobe's own frame, so
+// that any width fills the cells.
 double DeviationOverHalfVectors(const ImportanceSampler& sampler, const Vec3& wi) {
   const LobeWidths alpha = sampler.proposal().alpha;
   const auto probabilities = Histogram::Integrate([&](double s, double t) {
@@ -133,7 +133,8 @@ double DeviationOverHalfVectors(const ImportanceSampler& sampler, const Vec3& wi
     const double cos_d = Dot(wi, h);
     const Vec3 wo = 2.0 * cos_d * h - wi;
     if (cos_d <= 0.0 || wo.z <= 0.0) return 0.0;
-    // dwo = 4 cos_d dwh, dwh = cos^3 dx dy, dx dy = alpha_x alpha_y / 2 dr dphi, dr = ds / (1 - s)^2
+    // dwo = 4 cos_d dwh, dwh = cos^3 dx dy, dx dy = alpha_x alpha_y / 2 dr dphi, dr = ds / (1 -
+    // s)^2
     const double jacobian = 4.0 * cos_d * cos_h * cos_h * cos_h * alpha.x * alpha.y * kPi;
     return PdfAt(sampler, {wi, wo}) * jacobian / ((1.0 - s) * (1.0 - s));
   });

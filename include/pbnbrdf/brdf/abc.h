@@ -5,10 +5,10 @@
 //
 // rho_s is the A of [1], F Schlick's Fresnel reflectance, G that of V-cavities (microfacet.h).
 //
-// [1] J. Low, J. Kronander, A. Ynnerman, J. Unger. BRDF Models for Accurate and Efficient Rendering of
-//     Glossy Surfaces. ACM TOG 31(1), 2012: the microfacet model.
-// [2] E. Church, H. Jenkinson, J. Zavada. Relationship between Surface Scattering and Microtopographic
-//     Features. Optical Engineering 18(2), 1979.
+// [1] J. Low, J. Kronander, A. Ynnerman, J. Unger. BRDF Models for Accurate and Efficient Rendering
+//     of Glossy Surfaces. ACM TOG 31(1), 2012: the microfacet model.
+// [2] E. Church, H. Jenkinson, J. Zavada. Relationship between Surface Scattering and
+//     Microtopographic Features. Optical Engineering 18(2), 1979.
 #pragma once
 
 #include "pbnbrdf/brdf/microfacet.h"

@@ -1,8 +1,8 @@
 // analytic.h: analytic reflectance models by name and parameters: a diffuse part, and lobes.
 //
-// The formulas are a family a header: diffuse.h, phong.h, ward.h, microfacet.h, lafortune.h, abc.h and
-// disney.h; sgd.h reads its parameters from a table. All are reciprocal and non-negative. A text
-// names a model with its parameters, colours as R/G/B or one number for all three:
+// The formulas are a family a header: diffuse.h, phong.h, ward.h, microfacet.h, lafortune.h, abc.h
+// and disney.h; sgd.h reads its parameters from a table. All are reciprocal and non-negative. A
+// text names a model with its parameters, colours as R/G/B or one number for all three:
 //
 //   ggx:f0=1/0.78/0.34,alpha=0.2,rho_d=0.05
 //   ward:rho_d=0.3,rho_s=0.1,alpha_x=0.05,alpha_y=0.15
@@ -51,8 +51,8 @@ class AnalyticBrdf final : public PointwiseBrdf {
   using Metadata = std::map<std::string, std::string>;
 
   // parameters: the scalars of the base and of each lobe, one after the other. lobes: 1 to
-  // kMostLobes, 0 if the model has none. Throws Error if their number is another or one isn't within
-  // its bounds.
+  // kMostLobes, 0 if the model has none. Throws Error if their number is another or one isn't
+  // within its bounds.
   AnalyticBrdf(const AnalyticModel& model, int lobes, std::vector<double> parameters);
 
   // Throws Error: what is unknown and the nearest that is known, or out of bounds.

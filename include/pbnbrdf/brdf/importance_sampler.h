@@ -4,18 +4,18 @@
 //   sampler.Sample(wi, u, wo, pdf);                    // a batch of directions
 //   brdf->Evaluate(pairs_of_wi_and_wo, f);             // weight: f wo.z / pdf
 //
-// The density is a mixture of the reflections on one lobe of GGX facets, by the distribution of those
-// that are visible from wi [1], and of a cosine:
+// The density is a mixture of the reflections on one lobe of GGX facets, by the distribution of
+// those that are visible from wi [1], and of a cosine:
 //
 //   p(wo | wi) = w (q(wo) + q(wo')) + (1 - w) cos_o / pi,   q(wo) = G1(wi) D(h) / (4 cos_i)
 //
-// in 1/sr, wo' the mirror image of wo below the horizon: reflections that end there are turned up, so
-// that no sample is lost and the integral over the hemisphere is 1 at any roughness. p is 0 where
-// either direction isn't above the horizon. Three numbers describe it.
+// in 1/sr, wo' the mirror image of wo below the horizon: reflections that end there are turned up,
+// so that no sample is lost and the integral over the hemisphere is 1 at any roughness. p is 0
+// where either direction isn't above the horizon. Three numbers describe it.
 //
 // [1] E. Heitz. Sampling the GGX Distribution of Visible Normals. JCGT 7(4), 2018.
-// [2] J. Dupuy, A. Benyoub. Sampling Visible GGX Normals with Spherical Caps. Computer Graphics Forum
-//     42(8), 2023.
+// [2] J. Dupuy, A. Benyoub. Sampling Visible GGX Normals with Spherical Caps. Computer Graphics
+//     Forum 42(8), 2023.
 #pragma once
 
 #include <array>
@@ -33,11 +33,11 @@ struct LobeProposal {
   static constexpr double kLeastWidth = 1e-4, kMostWidth = 1.0;
 };
 
-// The proposal with the least mean variance of f cos_o / p, R + G + B, over incident directions from 5
-// to 78 degrees, all around if the Brdf is anisotropic; by quadrature, so that it is the same each
-// time. lobe_weight is at most 0.95: the cosine covers what a lobe may miss. A Brdf that reflects
-// nothing has lobe_weight 0. Takes some ten thousands of values of the Brdf. Throws Error if a value
-// isn't finite.
+// The proposal with the least mean variance of f cos_o / p, R + G + B, over incident directions
+// from 5 to 78 degrees, all around if the Brdf is anisotropic; by quadrature, so that it is the
+// same each time. lobe_weight is at most 0.95: the cosine covers what a lobe may miss. A Brdf that
+// reflects nothing has lobe_weight 0. Takes 7,000 values of an isotropic Brdf, 83,000 of others.
+// Throws Error if a value isn't finite.
 LobeProposal FitLobeProposal(const Brdf& brdf);
 
 class ImportanceSampler {

@@ -2,8 +2,8 @@
 //
 //   rho_s (n + 2) / (2 pi) max(0, c_x wi.x wo.x + c_y wi.y wo.y + c_z wi.z wo.z)^n
 //
-// c = (-1, -1, 1) is the modified Phong lobe (phong.h); c_z below |c_x| puts the peak off the mirror
-// direction, c_x > 0 is retroreflective. [1] has the factor in c.
+// c = (-1, -1, 1) is the modified Phong lobe (phong.h); c_z below |c_x| puts the peak off the
+// mirror direction, c_x > 0 is retroreflective. [1] has the factor in c.
 //
 // [1] E. Lafortune, S.-C. Foo, K. Torrance, D. Greenberg. Non-Linear Approximation of Reflectance
 //     Functions. SIGGRAPH 1997.

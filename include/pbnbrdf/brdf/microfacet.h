@@ -1,4 +1,4 @@
-// microfacet.h: surfaces of mirror facets, D G F / (4 cos_i cos_o): GGX [1] and Beckmann facets [2].
+// microfacet.h: surfaces of mirror facets, D G F / (4 cos_i cos_o): GGX [1] and Beckmann's [2].
 //
 //   D        distribution of the facet normals; its integral with cos theta_h is 1
 //   G        GGX: Smith's masking and shadowing [1], elliptic as in [3]; Beckmann: V-cavities [2]
@@ -19,8 +19,8 @@
 
 namespace pbnbrdf {
 
-// Smith's masking of one direction above the horizon for GGX, eq. 34 of [1], with the width that the
-// lobe has along the direction's azimuth: 2 / (1 + sqrt(1 + alpha^2 tan^2 theta)).
+// Smith's masking of one direction above the horizon for GGX, eq. 34 of [1], with the width that
+// the lobe has along the direction's azimuth: 2 / (1 + sqrt(1 + alpha^2 tan^2 theta)).
 template <typename T>
 T GgxMasking(const Vec3& w, const T& alpha_x, const T& alpha_y) {
   using std::sqrt;

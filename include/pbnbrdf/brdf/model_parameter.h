@@ -1,7 +1,7 @@
 // model_parameter.h: what an analytic model says of each of its parameters.
 //
-// A formula is a type with two tables of them and what it adds to f, templated on the scalar, so that
-// values and derivatives come from the same lines:
+// A formula is a type with two tables of them and what it adds to f, templated on the scalar, so
+// that values and derivatives come from the same lines:
 //
 //   struct PhongFormula {
 //     static constexpr std::string_view kName = "phong", kPaper = "...";

@@ -7,10 +7,10 @@
 // Minimises, over the parameters of the model's base and of its lobes within their bounds
 // (brdf/model_parameter.h),
 //
-//   1/2 sum over samples of rho(|r|^2),  r_c = log(1 + f_c cos_i) - log(1 + f^_c cos_i),  c = R, G, B,
+//   1/2 sum over samples of rho(|r|^2),   r_c = log(1 + f_c cos_i) - log(1 + f^_c cos_i),
 //
-// the log residual (eq. 6) with rho the smooth L1 norm, by Ceres' Levenberg-Marquardt on jets through
-// the formulas.
+// the log residual (eq. 6) with rho the smooth L1 norm, by Ceres' Levenberg-Marquardt on jets
+// through the formulas.
 //
 // [1] A. Ngan, F. Durand, W. Matusik. Experimental Analysis of BRDF Models. EGSR 2005.
 #pragma once
@@ -54,9 +54,9 @@ struct AnalyticFit {
 };
 
 // An isotropic material gets an isotropic model, an anisotropic one a model whose axes are those of
-// the shading frame. Two lobes fit no worse than one: a fit of one is among their starts. The same arguments give the same parameters to the last bit, whatever the number
-// of threads. Throws Error as Validate does, if the material has next to no data, and if no start
-// has a finite cost.
+// the shading frame. Two lobes fit no worse than one: a fit of one is among their starts. The same
+// arguments give the same parameters to the last bit, whatever the number of threads. Throws Error
+// as Validate does, if the material has next to no data, and if no start has a finite cost.
 AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
                         const AnalyticFitOptions& options);
 
