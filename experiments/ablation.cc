@@ -8,6 +8,7 @@
 
 #include "ablation_tables.h"
 #include "comparison.h"
+#include "default_materials.h"
 #include "experiment.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/text.h"
@@ -51,48 +52,6 @@ reflect next to all light with and without the energy term, table 3 weights of t
 term, table 4 problems/pbnbrdf.flags with and without the energy term on materials as they are and
 scaled. Each fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
 )";
-
-constexpr const char* kBuiltins[] = {
-    "diffuse=builtin:spectralon",       "diffuse=builtin:wall-plaster",
-    "diffuse=builtin:white-sand",       "glossy=builtin:white-ceramic-tile",
-    "glossy=builtin:glossy-grey-paper", "glossy=builtin:ivory-computer-plastic",
-    "glossy=builtin:plastic-laminate",  "glossy=builtin:blue-plastic",
-    "glossy=builtin:red-satin-plastic", "metal=builtin:rough-iron",
-    "metal=builtin:satin-gold",         "metal=builtin:brushed-copper",
-    "metal=builtin:polished-chromium",  "metal=builtin:silver-mirror",
-    "metal=builtin:brushed-aluminium",  "metal=builtin:rolled-brass"};
-
-// Of each class some dark, light and coloured ones.
-constexpr const char* kSgdMaterials[] = {"diffuse=sgd:white-diffuse-bball",
-                                         "diffuse=sgd:polyurethane-foam",
-                                         "diffuse=sgd:neoprene-rubber",
-                                         "fabric=sgd:pink-felt",
-                                         "fabric=sgd:beige-fabric",
-                                         "fabric=sgd:red-fabric2",
-                                         "fabric=sgd:dark-specular-fabric",
-                                         "glossy=sgd:teflon",
-                                         "glossy=sgd:nylon",
-                                         "glossy=sgd:red-plastic",
-                                         "glossy=sgd:yellow-matte-plastic",
-                                         "glossy=sgd:specular-black-phenolic",
-                                         "glossy=sgd:specular-violet-phenolic",
-                                         "glossy=sgd:black-obsidian",
-                                         "glossy=sgd:white-marble",
-                                         "glossy=sgd:cherry-235",
-                                         "paint=sgd:blue-metallic-paint",
-                                         "paint=sgd:gold-metallic-paint",
-                                         "paint=sgd:color-changing-paint2",
-                                         "paint=sgd:dark-red-paint",
-                                         "paint=sgd:light-red-paint",
-                                         "paint=sgd:silver-metallic-paint2",
-                                         "paint=sgd:violet-acrylic",
-                                         "metal=sgd:alum-bronze",
-                                         "metal=sgd:alumina-oxide",
-                                         "metal=sgd:brass",
-                                         "metal=sgd:chrome-steel",
-                                         "metal=sgd:ss440",
-                                         "metal=sgd:two-layer-silver",
-                                         "metal=sgd:tungsten-carbide"};
 
 // A built-in material below this isn't one of low dissipation; others are scaled.
 constexpr double kLowDissipation = 0.9;
@@ -156,28 +115,15 @@ std::vector<SetUp> SetUps(std::size_t table, Base base) {
   return set_ups;
 }
 
-// "CLASS=sgd:NAME" with the path of --sgd.
-std::string WithSgdPath(const std::string& text) {
-  const std::size_t at = text.find("sgd:");
-  const bool is_short = (at == 0 || (at != std::string::npos && text[at - 1] == '=')) &&
-                        text.find('#') == std::string::npos;
-  if (!is_short) return text;
-  if (FLAGS_sgd.empty()) Fail("material '", text, "': --sgd must say where its parameters are");
-  return StrCat(text.substr(0, at + 4), FLAGS_sgd, "#", text.substr(at + 4));
-}
-
 std::vector<std::string> MaterialTexts(const std::vector<std::string>& arguments) {
-  std::vector<std::string> texts;
-  if (!FLAGS_materials.empty()) {
-    texts = Split(FLAGS_materials, ',');
-  } else {
-    texts.assign(std::begin(kBuiltins), std::end(kBuiltins));
-    if (!FLAGS_sgd.empty()) {
-      texts.insert(texts.end(), std::begin(kSgdMaterials), std::end(kSgdMaterials));
-    }
+  std::vector<std::string> texts =
+      FLAGS_materials.empty() ? BuiltinTexts() : Split(FLAGS_materials, ',');
+  if (FLAGS_materials.empty() && !FLAGS_sgd.empty()) {
+    const std::vector<std::string> sgd = SgdTexts();
+    texts.insert(texts.end(), sgd.begin(), sgd.end());
   }
   texts.insert(texts.end(), arguments.begin(), arguments.end());
-  std::transform(texts.begin(), texts.end(), texts.begin(), WithSgdPath);
+  for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
   return texts;
 }
 

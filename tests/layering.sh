@@ -10,10 +10,12 @@ forbid() {  # forbid PATTERN FOLDER...
     status=1
   fi
 }
-forbid 'gflags|glog' include src/base src/export src/kernels src/brdf src/network src/problem src/solve src/metrics
+forbid 'gflags|glog' include src/base src/export src/kernels src/brdf src/models src/network src/problem \
+  src/solve src/metrics
 forbid 'ceres|Eigen' include/pbnbrdf/base include/pbnbrdf/kernels include/pbnbrdf/brdf \
-  include/pbnbrdf/network include/pbnbrdf/metrics include/pbnbrdf/export \
+  include/pbnbrdf/models include/pbnbrdf/network include/pbnbrdf/metrics include/pbnbrdf/export \
   src/base src/kernels src/brdf src/network src/metrics src/export
-forbid 'nlohmann' include src/base src/export src/kernels src/brdf src/problem src/solve src/metrics
-forbid 'hdf5|H5' include src/base src/export src/kernels src/brdf src/problem src/solve src/metrics src/cli
+forbid 'nlohmann' include src/base src/export src/kernels src/models src/problem src/solve src/metrics
+forbid 'hdf5|H5' include src/base src/export src/kernels src/brdf src/models src/problem src/solve src/metrics \
+  src/cli
 exit $status

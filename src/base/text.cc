@@ -1,7 +1,9 @@
 #include "pbnbrdf/base/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 
 #include "pbnbrdf/base/error.h"
 
@@ -13,6 +15,21 @@ bool ParseAll(std::string_view text, T* value) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), *value);
   return code == std::errc() && end == text.data() + text.size();
+}
+
+// The number of letters to insert, delete or replace to get from a to b (Levenshtein).
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
+    }
+  }
+  return row.back();
 }
 
 }  // namespace
@@ -46,6 +63,13 @@ long ParseInteger(std::string_view field, std::string_view text) {
   long value = 0;
   if (!ParseAll(Trim(text), &value)) Fail(field, ": '", text, "' is not a whole number");
   return value;
+}
+
+std::string Nearest(const std::vector<std::string>& names, const std::string& name) {
+  return *std::min_element(names.begin(), names.end(),
+                           [&](const std::string& a, const std::string& b) {
+                             return EditDistance(name, a) < EditDistance(name, b);
+                           });
 }
 
 std::string FormatNumber(double value) {

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/brdf/analytic.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/merl.h"
 #include "pbnbrdf/brdf/sgd.h"
@@ -19,6 +20,12 @@ std::unique_ptr<Brdf> OpenMeasuredBrdf(const std::string& source) {
       Fail(source, ": expected sgd:PARAMETERS.csv#MATERIAL");
     }
     return std::make_unique<SgdBrdf>(SgdBrdf::Read(rest.substr(0, hash), rest.substr(hash + 1)));
+  }
+  if (source.ends_with(".json")) {
+    return std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(source));
+  }
+  if (NamesAnalyticModel(source)) {
+    return std::make_unique<AnalyticBrdf>(AnalyticBrdf::FromText(source));
   }
   return std::make_unique<MerlBrdf>(MerlBrdf::Read(source));
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <numeric>
 #include <sstream>
 
 #include "pbnbrdf/base/files.h"
@@ -26,34 +25,12 @@ std::string ShownValue(const std::string& type, const std::string& value) {
   return type == "double" ? FormatNumber(ParseNumber("flag", value)) : value;
 }
 
-// The number of letters to insert, delete or replace to get from a to b (Levenshtein).
-std::size_t EditDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replace = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
-    }
-  }
-  return row.back();
-}
-
 std::vector<std::string> AllFlags(const Command& command) {
   std::vector<std::string> names;
   for (const FlagGroup& group : command.flags) {
     names.insert(names.end(), group.names.begin(), group.names.end());
   }
   return names;
-}
-
-std::string NearestFlag(const std::vector<std::string>& flags, const std::string& name) {
-  return *std::min_element(flags.begin(), flags.end(),
-                           [&](const std::string& a, const std::string& b) {
-                             return EditDistance(name, a) < EditDistance(name, b);
-                           });
 }
 
 class Parser {
@@ -111,7 +88,7 @@ class Parser {
     if (name == "flagfile") return ReadFlagfile(value, depth);
     if (!IsKnown(name)) {
       FailUsage("--", name, " is not a flag of '", command_.name, "'; did you mean --",
-                NearestFlag(flags_, name), "? See pbnbrdf ", command_.name, " --help");
+                Nearest(flags_, name), "? See pbnbrdf ", command_.name, " --help");
     }
     if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
       gflags::CommandLineFlagInfo info;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "pbnbrdf/brdf/analytic.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "report.h"
 #include "shared_flags.h"
@@ -18,6 +19,22 @@ namespace {
 
 constexpr std::size_t kMostSamples = 100'000'000;
 
+struct Fitted {
+  std::unique_ptr<Brdf> brdf;
+  std::size_t parameters;  // numbers that it stores
+};
+
+Fitted OpenFit(const std::string& path) {
+  if (path.ends_with(".json")) {
+    auto model = std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(path));
+    const std::size_t parameters = model->parameters().size();
+    return {std::move(model), parameters};
+  }
+  auto network = std::make_unique<NeuralBrdf>(NeuralBrdf::Read(path));
+  const std::size_t parameters = network->weights().size();
+  return {std::move(network), parameters};
+}
+
 int RunEval(const std::string&) {
   RequireFlag("fit", FLAGS_fit);
   CheckMaterialFlags();
@@ -25,10 +42,10 @@ int RunEval(const std::string&) {
     throw UsageError(
         StrCat("--eval_samples = ", FLAGS_eval_samples, "; must be 1 to ", kMostSamples));
   }
-  const NeuralBrdf fit = NeuralBrdf::Read(FLAGS_fit);
+  const Fitted fit = OpenFit(FLAGS_fit);
   const std::unique_ptr<Brdf> material = OpenMaterial();
   const nlohmann::ordered_json measures = AboutMaterial([&] {
-    return MeasureFit(*material, fit, fit.weights().size(), FLAGS_eval_samples, FLAGS_eval_seed);
+    return MeasureFit(*material, *fit.brdf, fit.parameters, FLAGS_eval_samples, FLAGS_eval_seed);
   });
   std::cout << (FLAGS_json ? measures.dump(2) + "\n" : MeasuresText(measures));
   return 0;

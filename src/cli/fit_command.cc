@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "fit_flags.h"
+#include "fit_model.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
 #include "pbnbrdf/solve/fit.h"
@@ -136,6 +137,7 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
 int RunFit(const std::string&) {
   CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
+  if (FitsModel()) return RunModelFit();
   FitFlags flags = ParseFitFlags();
   CheckDifferent({FLAGS_out, FLAGS_summary, FLAGS_trace});
   CheckWritable(FLAGS_out);
@@ -196,15 +198,22 @@ int RunFit(const std::string&) {
 Command FitCommand() {
   Command command;
   command.name = "fit";
-  command.summary = "fits a neural BRDF to a material";
+  command.summary = "fits a neural BRDF to a material, or an analytic model";
   command.usage =
       "  pbnbrdf fit --material=gold.binary --out=gold.safetensors\n"
       "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary "
-      "--out=gold.safetensors\n";
-  command.notes = std::string(kSourceNotes) +
-                  "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
+      "--out=gold.safetensors\n"
+      "  pbnbrdf fit --model=ggx --lobes=2 --material=gold.binary --out=gold.json\n";
+  command.notes =
+      std::string(kSourceNotes) +
+      "\nWith --model the file holds the model, its parameters and its errors; of the flags above "
+      "it\n"
+      "takes sampling, samples [6000], seed, loss_scale, starts [12], max_iterations [100] and\n"
+      "function_tolerance [1e-05].\n"
+      "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
   command.flags = {MaterialFlagsAnd({"out", "summary", "trace", "quiet", "threads"})};
   for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);
+  command.flags.push_back(ModelFlags());
   command.run = RunFit;
   return command;
 }

@@ -1,7 +1,10 @@
 // pbnbrdf info
+#include <iomanip>
 #include <iostream>
+#include <map>
 
 #include "commands.h"
+#include "pbnbrdf/brdf/analytic.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/network/open_brdf.h"
@@ -16,6 +19,34 @@ void ListBuiltins() {
   }
 }
 
+std::string ShownBounds(const ModelParameter& parameter) {
+  return StrCat(parameter.lower, " to ", parameter.upper, ", else ", parameter.initial);
+}
+
+void ListParameters(std::span<const ModelParameter> table) {
+  for (const ModelParameter& parameter : table) {
+    std::cout << "    " << std::left << std::setw(16) << parameter.name << parameter.meaning
+              << (parameter.size == 3 ? "; R/G/B" : "") << "; " << ShownBounds(parameter) << "\n";
+    if (!parameter.pair_name.empty()) {
+      std::cout << "    " << std::left << std::setw(16) << parameter.pair_name
+                << "both of the two above\n";
+    }
+  }
+}
+
+void ListModels() {
+  std::cout
+      << "An analytic model is a source with its parameters after a colon, colours as R/G/B or "
+         "one number:\n"
+         "ggx:f0=1/0.78/0.34,alpha=0.2,rho_d=0.05. Lobes may be two: names of the second one's "
+         "end with _2.\n";
+  for (const AnalyticModel& model : AnalyticModels()) {
+    std::cout << model.name << ": (" << model.paper << ")\n";
+    ListParameters(model.base);
+    ListParameters(model.lobe);
+  }
+}
+
 // Indents the further lines of a text.
 std::string Indented(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
@@ -25,17 +56,28 @@ std::string Indented(std::string text) {
   return text;
 }
 
+void PrintMetadata(const std::map<std::string, std::string>& metadata) {
+  for (const auto& [key, value] : metadata) {
+    std::cout << "  " << key << ": " << Indented(value) << "\n";
+  }
+}
+
 int RunInfo(const std::string& source) {
   if (source == "builtin:") {
     ListBuiltins();
     return 0;
   }
+  if (source == "models:") {
+    ListModels();
+    return 0;
+  }
   const std::unique_ptr<Brdf> brdf = OpenBrdf(source);
   std::cout << source << ": " << brdf->Description() << "\n";
   if (const auto* network = dynamic_cast<const NeuralBrdf*>(brdf.get())) {
-    for (const auto& [key, value] : network->metadata()) {
-      std::cout << "  " << key << ": " << Indented(value) << "\n";
-    }
+    PrintMetadata(network->metadata());
+  }
+  if (const auto* model = dynamic_cast<const AnalyticBrdf*>(brdf.get())) {
+    PrintMetadata(model->metadata());
   }
   return 0;
 }
@@ -48,7 +90,8 @@ Command InfoCommand() {
   command.summary = "says what a source of reflectance is";
   command.usage =
       "  pbnbrdf info gold.safetensors\n"
-      "  pbnbrdf info builtin:          lists the materials that ship with the program\n";
+      "  pbnbrdf info builtin:          lists the materials that ship with the program\n"
+      "  pbnbrdf info models:           lists the analytic models and their parameters\n";
   command.notes = kSourceNotes;
   command.argument = "a file or another source";
   command.run = RunInfo;

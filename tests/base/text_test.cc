@@ -40,5 +40,14 @@ TEST(Names, ErrorsListTheChoices) {
             "count=three is not one of one | two");
 }
 
+TEST(Nearest, CountsLetters) {
+  const std::vector<std::string> names = {"rho_d", "alpha", "alpha_x"};
+  EXPECT_EQ(Nearest(names, "alpa"), "alpha");
+  EXPECT_EQ(Nearest(names, "alphax"), "alpha");  // the first of those that are equally near
+  EXPECT_EQ(Nearest(names, "aplha_x"), "alpha_x");
+  EXPECT_EQ(Nearest(names, "rho"), "rho_d");
+  EXPECT_EQ(Nearest(names, "alpha_x"), "alpha_x");
+}
+
 }  // namespace
 }  // namespace pbnbrdf

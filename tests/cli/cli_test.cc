@@ -308,6 +308,77 @@ TEST_F(Cli, EvalHasExactlyTheDocumentedKeys) {
   for (const std::string& key : keys) EXPECT_THAT(text.out, HasSubstr(key + " "));
 }
 
+TEST_F(Cli, AModelFitIsASourceAndAFit) {
+  const std::string material = " --material=builtin:blue-plastic";
+  const Result fit = Run("fit --model=ggx --samples=500 --starts=3 --seed=4" + material +
+                         " --out=" + Path("a.json"));
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_EQ(fit.err, "");
+  EXPECT_THAT(fit.out, HasSubstr("a.json: ggx:rho_d="));
+  EXPECT_THAT(fit.out, HasSubstr("mean_abs_log_error"));
+  const json file = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  EXPECT_EQ(file["model"], "ggx");
+  EXPECT_EQ(file["seed"], 4);
+  EXPECT_EQ(file["samples"], 500);
+  EXPECT_EQ(file["material"], "builtin:blue-plastic");
+  EXPECT_EQ(file["version"], Split(Split(Run("--version").out, '\n')[0], ' ')[1]);
+  EXPECT_NEAR(file["parameters"]["alpha_x"], 0.05, 0.002);  // blue-plastic's
+  EXPECT_LT(file["errors"]["mean_abs_log_error"], 0.01);
+
+  const Result eval = Run("eval --json --eval_samples=2000 --fit=" + Path("a.json") + material);
+  ASSERT_EQ(eval.status, 0) << eval.err;
+  const json measures = json::parse(eval.out);
+  EXPECT_EQ(measures["parameters"], 11);
+  EXPECT_LT(measures["mean_abs_log_error"], 0.01);
+  EXPECT_EQ(measures["hrl"], 0.0);
+
+  WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.3,0,0.5,1\n");
+  const std::string directions = " --out=- --directions=" + Path("pairs.csv");
+  EXPECT_EQ(Run("values --material=" + Path("a.json") + directions).out,
+            Run("values --material=" + std::string(file["source"]) + directions).out);
+  EXPECT_EQ(Run("tabulate --material=" + Path("a.json") + " --out=" + Path("a.binary")).status, 0);
+  const Result info = Run("info " + Path("a.json"));
+  EXPECT_THAT(info.out, HasSubstr("Walter et al. 2007"));
+  EXPECT_THAT(info.out, HasSubstr("  seed: 4\n"));
+  ASSERT_EQ(Run("fit" + kQuick + "--material=" + Path("a.json") + " --out=" + Path("n.safetensors"))
+                .status,
+            0);
+}
+
+TEST_F(Cli, EveryModelFits) {
+  const std::string listed = Run("info models:").out, help = Run("fit --help").out;
+  for (const char* model : {"lambert", "oren_nayar", "phong", "blinn_phong", "lafortune", "ward",
+                            "ward_duer", "ward_bounded", "cook_torrance", "ggx", "abc", "disney"}) {
+    EXPECT_THAT(listed, HasSubstr(StrCat("\n", model, ": (")));
+    EXPECT_THAT(help, HasSubstr(StrCat(" ", model)));
+    const std::string out = Path(StrCat(model, ".json"));
+    const Result fit = Run(StrCat("fit --quiet --samples=200 --starts=2 --max_iterations=5 ",
+                                  "--lobes=2 --model=", model,
+                                  " --material=builtin:red-satin-plastic --out=", out));
+    EXPECT_EQ(fit.status, 0) << fit.err;
+    EXPECT_EQ(fit.out + fit.err, "") << model;
+    EXPECT_THAT(Run("info " + out).out, HasSubstr(StrCat(": ", model, ":")));
+  }
+}
+
+TEST_F(Cli, ModelMistakesAreNamed) {
+  const std::string fit = "fit --material=builtin:blue-plastic --out=" + Path("out.json");
+  ExpectError(fit + " --model=gxg", 2, "--model 'gxg' is unknown; did you mean ggx?");
+  ExpectError(fit + " --model=ggx --lobes=3", 2, "--lobes = 3; must be 1 to 2");
+  ExpectError(fit + " --model=ggx --samples=0", 2, "--samples = 0; must be >= 1");
+  ExpectError(fit + " --model=ggx --hidden=5", 2, "--hidden is a flag of networks");
+  ExpectError(fit + " --model=ggx --trace=" + Path("t.csv"), 2, "--trace is a flag of networks");
+  ExpectError(fit + " --lobes=2", 2, "--lobes is a flag of --model");
+  ExpectError("fit --model=ggx --material=builtin:blue-plastic --out=" + Path("out"), 2,
+              "out: a model is written to a FILE.json");
+  EXPECT_FALSE(std::filesystem::exists(Path("out.json")));
+  ExpectError("info ggx:alpa=0.1", 1, "ggx: no parameter 'alpa'; did you mean alpha?");
+  ExpectError("info gxg:alpha=0.1", 1, "model 'gxg' is unknown; did you mean ggx?");
+  WriteBytes(Path("bad.json"), "{}");
+  ExpectError("eval --material=builtin:blue-plastic --fit=" + Path("bad.json"), 1,
+              "bad.json: not an analytic model");
+}
+
 TEST_F(Cli, EvalSaysWhereEnergyIsMade) {
   const std::string material = " --material=builtin:spectralon --scale_to_albedo=1.5 ";
   ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);

@@ -240,6 +240,59 @@ TEST(Collection, WritesEveryFitAndThoseThatFail) {
   EXPECT_EQ(RunIn(folder, "collection", {}).status, 1);
 }
 
+const std::vector<std::string> kTinyModels = {"--samples=300",         "--starts=2",
+                                              "--network_samples=300", "--network_iterations=3",
+                                              "--heldout_samples=500", "--hidden=3,3"};
+
+TEST(Models, WritesEveryFitAndTheTables) {
+  const TemporaryFolder folder;
+  std::vector<std::string> flags = kTinyModels;
+  flags.insert(flags.end(), {"--models=lambert,phong,ggx", "--lobes=1,2",
+                             "--materials=metal=builtin:satin-gold", "builtin:rolled-brass"});
+  const ProgramResult run = RunIn(folder, "models", flags);
+  ASSERT_EQ(run.status, 0);
+  const std::string csv = Read(folder / "results/models.csv");
+  EXPECT_THAT(csv, testing::StartsWith("material,kind,method,parameters,iterations,seconds,"
+                                       "mean_abs_log_error,rmse,delta_e_mean\n"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 6);
+  EXPECT_THAT(csv, HasSubstr("satin-gold,builtin,\"ggx, 2 lobes\",19,"));
+  EXPECT_THAT(csv, HasSubstr("satin-gold,builtin,lambert,3,"));
+  for (const char* text : {"Failed fits: 0.", "## By material", "| satin-gold ", "| rolled-brass ",
+                           "## By method, builtin", "| phong, 1 lobe ", "| network 3-3 "}) {
+    EXPECT_THAT(run.output, HasSubstr(text));
+  }
+  EXPECT_EQ(Read(folder / "results/models.md"), run.output);
+}
+
+TEST(Models, DefaultMaterialsAreTheBuiltinOnes) {
+  const TemporaryFolder folder;
+  const ProgramResult run = RunIn(
+      folder, "models",
+      {"--models=lambert", "--hidden=", "--samples=50", "--starts=1", "--heldout_samples=50"});
+  ASSERT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, testing::StartsWith("21 materials. "));
+}
+
+TEST(Models, CountsFitsThatFail) {
+  const TemporaryFolder folder;
+  WriteEmptyTable(folder / "empty.binary");
+  std::vector<std::string> flags = kTinyModels;
+  flags.insert(flags.end(),
+               {"--models=ggx", "--lobes=1", "--materials=" + (folder / "empty.binary")});
+  const ProgramResult run = RunIn(folder, "models", flags);
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, HasSubstr("Failed fits: 2.\n\n- empty, ggx, 1 lobe: "));
+}
+
+TEST(Models, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--models=none", "--lobes=3", "--lobes=0", "--hidden=a", "--samples=0",
+                           "--starts=0", "--sampling=other", "--heldout_samples=0",
+                           "--materials=sgd:brass", "--materials=absent.binary"}) {
+    EXPECT_EQ(RunIn(folder, "models", {flag}).status, 1) << flag;
+  }
+}
+
 TEST(JacobianCost, WritesTableAndFigure) {
   const TemporaryFolder folder;
   const ProgramResult run =
@@ -322,8 +375,8 @@ TEST(Experiments, HelpNamesTheFlags) {
   const TemporaryFolder folder;
   for (const auto& [program, flag] :
        {std::pair("ablation", "--chromaticity_weights"), std::pair("jacobian_cost", "--hidden"),
-        std::pair("scaling", "--hidden"), std::pair("solver_comparison", "--hidden"),
-        std::pair("stability", "--runs")}) {
+        std::pair("models", "--lobes"), std::pair("scaling", "--hidden"),
+        std::pair("solver_comparison", "--hidden"), std::pair("stability", "--runs")}) {
     const ProgramResult run = RunIn(folder, program, {"--help"});
     EXPECT_EQ(run.status, 0);
     EXPECT_THAT(run.output, HasSubstr("--out_dir"));

@@ -2,6 +2,8 @@
 
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"
+#include "pbnbrdf/brdf/albedo.h"
+#include "pbnbrdf/brdf/importance_sampler.h"
 #include "pbnbrdf/network/mlp.h"
 #include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/network/safetensors.h"
@@ -123,6 +125,33 @@ TEST(NeuralBrdf, RefusesWeightsThatDontFit) {
   EXPECT_THAT(ErrorOf([&] { NeuralBrdf(shape, std::vector<double>(3)); }), HasSubstr("3 numbers"));
   EXPECT_THAT(ErrorOf([&] { NeuralBrdf(shape, std::vector<double>(675, std::nan(""))); }),
               HasSubstr("not finite"));
+}
+
+TEST(NeuralBrdf, AnImportanceSamplerEstimatesItsAlbedo) {
+  constexpr std::size_t kCount = 20000;
+  for (Encoding encoding : {Encoding::kMerl, Encoding::kAnisotropic}) {
+    const NeuralBrdf network = RandomNetwork(encoding);
+    const ImportanceSampler sampler(network);
+    const Vec3 wi = FromSpherical(0.6, 1.0);
+    const std::vector<double> random = RandomNumbers(2 * kCount, 0.0, 1.0, /*seed=*/5);
+    std::vector<std::array<double, 2>> u(kCount);
+    for (std::size_t n = 0; n < kCount; ++n) u[n] = {random[2 * n], random[2 * n + 1]};
+    std::vector<Vec3> wo(kCount);
+    std::vector<double> pdf(kCount);
+    sampler.Sample(std::vector<Vec3>(kCount, wi), u, wo, pdf);
+    std::vector<DirectionPair> pairs;
+    for (const Vec3& w : wo) pairs.push_back({wi, w});
+    std::vector<Rgb> values(kCount);
+    network.Evaluate(pairs, values);
+    Rgb albedo = {};
+    for (std::size_t n = 0; n < kCount; ++n) {
+      for (int c = 0; c < 3; ++c) albedo[c] += values[n][c] * wo[n].z / pdf[n] / kCount;
+    }
+    const Rgb exact = DirectionalAlbedo(network, wi);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(albedo[c], exact[c], 0.03 * (exact[0] + exact[1] + exact[2]));
+    EXPECT_GT(exact[0] + exact[1] + exact[2], 0.1);
+  }
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ double ParseNumber(std::string_view field, std::string_view text);
 // Throws Error "<field>: '<text>' is not a whole number".
 long ParseInteger(std::string_view field, std::string_view text);
 
+// The one of `names`, which aren't empty, that differs from `name` in the fewest letters.
+std::string Nearest(const std::vector<std::string>& names, const std::string& name);
+
 // The shortest text that reads back as the same double.
 std::string FormatNumber(double value);
 

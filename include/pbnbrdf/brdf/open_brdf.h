@@ -8,7 +8,8 @@
 
 namespace pbnbrdf {
 
-// "FILE.binary" (MERL), "sgd:PARAMETERS.csv#MATERIAL" or "builtin:NAME". Throws Error.
+// "FILE.binary" (MERL), "sgd:PARAMETERS.csv#MATERIAL", "builtin:NAME", an analytic model with its
+// parameters, "MODEL:NAME=VALUE,..." (analytic.h), or the file of one, "FILE.json". Throws Error.
 std::unique_ptr<Brdf> OpenMeasuredBrdf(const std::string& source);
 
 }  // namespace pbnbrdf
