@@ -23,11 +23,6 @@ inline constexpr NameTable<Sampling, 2> kSamplings = {
 // The two sets draw theta_d from disjoint grids: they have no sample in common, whatever the seeds.
 enum class SampleSet { kTraining, kHeldOut };
 
-struct BrdfSample {
-  DirectionPair pair;
-  Rgb value;  // f in 1/sr, >= 0
-};
-
 // Samples at which a Brdf is known, one after the other: the same arguments give the same ones,
 // however many at a time.
 class SampleStream {
