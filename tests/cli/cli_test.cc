@@ -123,7 +123,7 @@ TEST_F(Cli, BadMaterialsExitWith1) {
   ExpectError(fit("builtin:gold"), 1, "builtin:gold is not one of spectralon");
   ExpectError(fit("sgd:" + Path("none.csv") + "#x"), 1, "none.csv: no such file");
   WriteBytes(Path("short.binary"), std::string(100, '\0'));
-  ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, expected 90 x 90 x 180");
+  ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, such as 90 x 90 x 180");
   WriteBytes(Path("bad.safetensors"), std::string(100, '\xff'));
   ExpectError(fit(Path("bad.safetensors")), 1, "bad.safetensors: not a safetensors file");
   ExpectError("tabulate --material=" + Path("none.binary") + " --out=" + Path("out"), 1,
