@@ -47,8 +47,8 @@ class Fitter {
  public:
   Fitter(const Brdf& material, const FitProblem& problem, const FitOptions& options)
       : options_(options),
-        most_samples_(problem.samples),
         stream_(material, SampleSet::kTraining, problem.sampling, problem.seed),
+        most_samples_(std::min(problem.samples, stream_.most())),
         validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling,
                                         kValidationSamples, problem.seed + kValidationSeed)),
         curvature_samples_(options.curvature_samples),
@@ -294,8 +294,8 @@ class Fitter {
 
   Stopwatch stopwatch_;
   const FitOptions& options_;
-  std::size_t most_samples_;
   SampleStream stream_;
+  std::size_t most_samples_;
   std::vector<BrdfSample> samples_, validation_samples_;
   std::size_t curvature_samples_;
   std::vector<EnergyStratum> strata_;

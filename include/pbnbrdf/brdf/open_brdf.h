@@ -8,7 +8,9 @@
 
 namespace pbnbrdf {
 
-// "FILE.binary" (MERL), "sgd:PARAMETERS.csv#MATERIAL" or "builtin:NAME". Throws Error.
+// "sgd:PARAMETERS.csv#MATERIAL", "builtin:NAME", or a file: FILE.bsdf (rgl.h), FILE.alta or FILE.dat
+// (ALTA) or FILE.csv (scattered_files.h), FILE.binary (merl.h). Files of other names are told by what
+// they begin with, and are MERL tables if nothing else. Throws Error.
 std::unique_ptr<Brdf> OpenMeasuredBrdf(const std::string& source);
 
 }  // namespace pbnbrdf
