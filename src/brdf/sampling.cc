@@ -17,6 +17,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kBatch = 1024;
 constexpr std::size_t kDrawsPerKnown = 10000;
 constexpr std::size_t kHeldOutOneIn = 8;
+constexpr std::size_t kFewMeasurements = 3000, kMeasuredToInterpolated = 3;
 constexpr double kPlacesPerUnit = 1e6;
 
 // Uniform on the grid (k + 1/2) 2^-32; std::uniform_real_distribution differs between libraries.
@@ -88,7 +89,37 @@ SampleStream::SampleStream(const Brdf& brdf, SampleSet set, Sampling sampling, s
   if (all.empty()) return;
   measured_ = PartOf(all, set, brdf.IsIsotropic());
   if (measured_.empty()) Fail("too little data: a single measurement");
+  if (set == SampleSet::kTraining) AddInterpolated();
   Shuffle(&measured_, &random_);
+}
+
+void SampleStream::AddInterpolated() {
+  ScatteredData data;
+  data.isotropic = brdf_.IsIsotropic();
+  data.samples = measured_;
+  const ScatteredBrdf interpolated(std::move(data));
+  const std::size_t part = measured_.size();
+  while (measured_.size() < kFewMeasurements) {
+    measured_.insert(measured_.end(), measured_.begin(),
+                     measured_.begin() + static_cast<std::ptrdiff_t>(part));
+  }
+  std::vector<DirectionPair> pairs;
+  while (pairs.size() < measured_.size() / kMeasuredToInterpolated) {
+    const DirectionPair pair = DrawPair();
+    if (pair.AboveHorizon()) pairs.push_back(pair);
+  }
+  std::vector<Rgb> values(pairs.size());
+  interpolated.Evaluate(pairs, values);
+  for (std::size_t n = 0; n < pairs.size(); ++n) measured_.push_back({pairs[n], values[n]});
+}
+
+DirectionPair SampleStream::DrawPair() {
+  RusinkiewiczAngles angles;
+  angles.theta_h = DrawThetaH(sampling_, random_);
+  angles.theta_d = 0.5 * kPi * UniformOf(set_, random_);
+  angles.phi_d = 2.0 * kPi * Uniform(random_);
+  if (!brdf_.IsIsotropic()) angles.phi_h = 2.0 * kPi * Uniform(random_);
+  return FromAngles(angles);
 }
 
 std::size_t SampleStream::most() const {
@@ -111,12 +142,7 @@ void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* sample
     if (drawn >= kDrawsPerKnown * (count - missing + 100)) {
       Fail("too little data: ", count - missing, " of ", drawn, " random angles are known");
     }
-    RusinkiewiczAngles angles;
-    angles.theta_h = DrawThetaH(sampling_, random_);
-    angles.theta_d = 0.5 * kPi * UniformOf(set_, random_);
-    angles.phi_d = 2.0 * kPi * Uniform(random_);
-    if (!brdf_.IsIsotropic()) angles.phi_h = 2.0 * kPi * Uniform(random_);
-    const DirectionPair pair = FromAngles(angles);
+    const DirectionPair pair = DrawPair();
     if (brdf_.IsKnown(pair)) pairs.push_back(pair);
     if (pairs.size() < std::min(kBatch, missing)) continue;
     brdf_.Evaluate(pairs, std::span(values).first(pairs.size()));

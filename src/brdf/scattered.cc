@@ -24,10 +24,9 @@ bool IsUsable(const BrdfSample& sample) {
 
 ScatteredData Usable(ScatteredData data) {
   data.left_out += std::erase_if(data.samples, [](const auto& s) { return !IsUsable(s); });
-  if (data.samples.size() < ScatteredBrdf::kLeastSamples) {
-    Fail("too little data: ", data.samples.size(),
-         " measurements with both directions above the horizon and no negative value, ",
-         data.left_out, " others");
+  if (data.samples.empty()) {
+    Fail("no data: of ", data.left_out,
+         " measurements none has both directions above the horizon and no negative value");
   }
   for (BrdfSample& sample : data.samples) {
     for (double& value : sample.value) value = std::min(value, Brdf::kLargestValue);

@@ -98,7 +98,7 @@ Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weigh
     for (int c = 0; c < 3; ++c) {
       if (!(largest[c] > kMostAlbedo)) continue;
       step[c] = std::log((largest[c] + support[c]) / (kMostAlbedo + support[c])) + kLeastStep;
-      (*weights)[shape.offset(last) + c * (in + 1) + in] -= step[c];
+      if (c < shape.num_outputs()) (*weights)[shape.offset(last) + c * (in + 1) + in] -= step[c];
       sum[c] += step[c];
     }
     const Rgb before = largest;

@@ -365,6 +365,10 @@ Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& o
     Fail("encoding: ", NameOf(kEncodings, problem.encoding),
          " is for anisotropic materials; an isotropic one has samples at phi_h = 0 only");
   }
+  if (problem.channels < material.NumChannels()) {
+    Fail("channels: the material has ", material.NumChannels(), ", the network's ",
+         problem.channels, " would be a guess");
+  }
   const int most_threads = tbb::this_task_arena::max_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
                                             : most_threads);

@@ -146,8 +146,8 @@ TEST_F(ScatteredFiles, BadAltaFilesAreNamed) {
               HasSubstr("line 3: a direction has no length"));
   EXPECT_THAT(error(Alta("3 1", in, "", "0.1 0.2 0.3 4")),
               HasSubstr("line 3: the last line has no end"));
-  EXPECT_THAT(error(Alta("3 1", in, "", "0.1 0.2 0.3 4\n0.1 1.6 0 4\n")),
-              HasSubstr("a.alta: too little data: 1 measurements"));
+  EXPECT_THAT(error(Alta("3 1", in, "", "0.1 0.2 0.3 -4\n0.1 1.6 0 4\n")),
+              HasSubstr("a.alta: no data: of 2 measurements none has both directions above"));
 }
 
 TEST_F(ScatteredFiles, CsvColumnsAreFoundByName) {
@@ -202,8 +202,7 @@ TEST_F(ScatteredFiles, BadCsvFilesAreNamed) {
   EXPECT_THAT(error(header + "0.3,0,0.4,90,5\n"), HasSubstr("phi_o: 90 is 90 radians"));
   EXPECT_THAT(error("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value\n0,0,0,0,0,1,1\n"),
               HasSubstr("line 2: a direction has no length"));
-  EXPECT_THAT(error(header), HasSubstr("a.csv: too little data: 0 measurements"));
-  EXPECT_THAT(error(header + row), HasSubstr("a.csv: too little data: 1 measurements"));
+  EXPECT_THAT(error(header), HasSubstr("a.csv: no data: of 0 measurements none"));
   EXPECT_THAT(error(header + row + "0.3,0,0.4,1,5"), HasSubstr("line 3: the last line has no end"));
 }
 

@@ -148,8 +148,9 @@ TEST(Scattered, WhatCannotBeUsedIsLeftOutAndCounted) {
   const ScatteredBrdf brdf(data);
   EXPECT_THAT(brdf.Description(), HasSubstr("RGB, 2 measurements, 5 unusable ones left out"));
   EXPECT_EQ(ValueAt(brdf, {up, up})[0], 0.5 * (1.0 + Brdf::kLargestValue));
-  data.samples.pop_back();
-  EXPECT_THAT(ErrorOf([&] { ScatteredBrdf{data}; }), HasSubstr("too little data: 1 measurements"));
+  data.samples = {{{up, level}, {1, 1, 1}}};
+  EXPECT_THAT(ErrorOf([&] { ScatteredBrdf{data}; }),
+              HasSubstr("no data: of 3 measurements none has"));
 }
 
 using Key = std::array<double, 4>;
@@ -160,34 +161,67 @@ std::multiset<Key> Keys(const std::vector<BrdfSample>& samples) {
   return keys;
 }
 
+std::vector<BrdfSample> Draw(const Brdf& brdf, SampleSet set, std::uint64_t seed) {
+  return DrawSamples(brdf, set, Sampling::kHighlight, 100000, seed);
+}
+
 TEST(ScatteredSampling, EverySampleIsDrawnOnceFromOneOfTheSets) {
-  const ScatteredBrdf brdf = Measured(kGlossy, 1000, 1);
-  const auto draw = [&](SampleSet set, std::uint64_t seed, std::size_t count) {
-    return DrawSamples(brdf, set, Sampling::kHighlight, count, seed);
-  };
-  const auto training = draw(SampleSet::kTraining, 1, 100000);
-  const auto held_out = draw(SampleSet::kHeldOut, 1, 100000);
-  EXPECT_EQ(training.size(), 875u);
-  EXPECT_EQ(held_out.size(), 125u);
+  const ScatteredBrdf brdf = Measured(kGlossy, 4000, 1);
+  const std::size_t count = brdf.Measurements().size();
+  const auto training = Draw(brdf, SampleSet::kTraining, 1);
+  const auto held_out = Draw(brdf, SampleSet::kHeldOut, 1);
+  EXPECT_EQ(held_out.size(), count / 8);
+  const std::size_t measured = count - held_out.size();
+  EXPECT_EQ(training.size(), measured + measured / 3);
   std::multiset<Key> all = Keys(training);
   all.merge(Keys(held_out));
-  EXPECT_EQ(all, Keys(brdf.Measurements()));
+  for (const Key& key : Keys(brdf.Measurements())) EXPECT_EQ(all.count(key), 1u);
   // The same sets for any seed, in another order.
-  const auto other = draw(SampleSet::kTraining, 2, 100000);
-  EXPECT_EQ(Keys(other), Keys(training));
-  EXPECT_NE(other[0].pair.wi.x, training[0].pair.wi.x);
-  EXPECT_EQ(Keys(draw(SampleSet::kTraining, 1, 10)).size(), 10u);
+  const auto other = Draw(brdf, SampleSet::kHeldOut, 2);
+  EXPECT_EQ(Keys(other), Keys(held_out));
+  EXPECT_NE(other[0].pair.wi.x, held_out[0].pair.wi.x);
 }
 
 TEST(ScatteredSampling, AStreamGoesOnWhereItStopped) {
   const ScatteredBrdf brdf = Measured(kGlossy, 100, 1);
-  SampleStream stream(brdf, SampleSet::kTraining, Sampling::kUniform, 3);
-  EXPECT_EQ(stream.most(), 88u);
+  const auto all = Draw(brdf, SampleSet::kTraining, 3);
+  SampleStream stream(brdf, SampleSet::kTraining, Sampling::kHighlight, 3);
+  EXPECT_EQ(stream.most(), all.size());
   std::vector<BrdfSample> samples;
-  for (std::size_t count : {1, 0, 50, 30, 20, 5}) stream.Draw(count, &samples);
-  const auto all = DrawSamples(brdf, SampleSet::kTraining, Sampling::kUniform, 88, 3);
+  for (std::size_t count : {1, 0, 500, 3000, 10000, 5}) stream.Draw(count, &samples);
   ASSERT_EQ(samples.size(), all.size());
-  for (std::size_t n = 0; n < all.size(); ++n) ASSERT_EQ(samples[n].value, all[n].value);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    ASSERT_EQ(samples[n].value, all[n].value);
+    ASSERT_EQ(samples[n].pair.wo.x, all[n].pair.wo.x);
+  }
+}
+
+TEST(ScatteredSampling, FewMeasurementsAreRepeatedAlike) {
+  const ScatteredBrdf brdf = Measured(kGlossy, 1000, 1);
+  const std::multiset<Key> training = Keys(Draw(brdf, SampleSet::kTraining, 1));
+  std::size_t measured = 0;
+  for (const Key& key : Keys(brdf.Measurements())) {
+    EXPECT_TRUE(training.count(key) == 0 || training.count(key) == 4) << training.count(key);
+    measured += training.count(key);
+  }
+  EXPECT_GE(measured, 3000u);
+  EXPECT_EQ(training.size(), measured + measured / 3);
+}
+
+// What is interpolated lies between the training samples, however much others stand out.
+TEST(ScatteredSampling, HeldOutValuesDontLeak) {
+  std::multiset<Key> held_out;
+  ScatteredData data;
+  data.samples = Measured(LambertBrdf({0.3, 0.3, 0.3}), 1000, 1).Measurements();
+  for (const auto& s : Draw(ScatteredBrdf(data), SampleSet::kHeldOut, 1)) {
+    held_out.insert({s.pair.wi.x, s.pair.wi.y, s.pair.wo.x, 0.0});
+  }
+  for (BrdfSample& s : data.samples) {
+    if (held_out.count({s.pair.wi.x, s.pair.wi.y, s.pair.wo.x, 0.0}) > 0) s.value = {1e6, 1e6, 1e6};
+  }
+  for (const auto& s : Draw(ScatteredBrdf(data), SampleSet::kTraining, 2)) {
+    ASSERT_NEAR(s.value[0], 0.3 / kPi, 1e-12);
+  }
 }
 
 // Twins of a held-out measurement would tell its value.
@@ -214,17 +248,18 @@ TEST(ScatteredSampling, MeasurementsAtOnePlaceAreInOneSet) {
 TEST(ScatteredSampling, TwoMeasurementsAreEnough) {
   ScatteredData data;
   data.samples = {{{{0, 0, 1}, {0, 0, 1}}, {1, 1, 1}}, {{{0, 0, 1}, {0.6, 0, 0.8}}, {2, 2, 2}}};
-  const ScatteredBrdf brdf(data);
-  for (SampleSet set : {SampleSet::kTraining, SampleSet::kHeldOut}) {
-    EXPECT_EQ(DrawSamples(brdf, set, Sampling::kUniform, 10, 1).size(), 1u);
-  }
+  EXPECT_EQ(Draw(ScatteredBrdf(data), SampleSet::kHeldOut, 1).size(), 1u);
+  EXPECT_EQ(Draw(ScatteredBrdf(data), SampleSet::kTraining, 1).size(), 4000u);
+  data.samples.pop_back();
+  EXPECT_THAT(ErrorOf([&] { Draw(ScatteredBrdf(data), SampleSet::kTraining, 1); }),
+              HasSubstr("too little data: a single measurement"));
 }
 
 TEST(ScatteredSampling, ScaledMeasurementsAreScaled) {
   const auto source = [] { return std::make_unique<ScatteredBrdf>(Measured(kGlossy, 100, 1)); };
   const ScaledBrdf scaled(source(), 0.5);
-  const auto half = DrawSamples(scaled, SampleSet::kTraining, Sampling::kUniform, 88, 1);
-  const auto full = DrawSamples(*source(), SampleSet::kTraining, Sampling::kUniform, 88, 1);
+  const auto half = Draw(scaled, SampleSet::kTraining, 1);
+  const auto full = Draw(*source(), SampleSet::kTraining, 1);
   ASSERT_EQ(half.size(), full.size());
   for (std::size_t n = 0; n < half.size(); ++n) {
     ASSERT_EQ(half[n].value[1], 0.5 * full[n].value[1]);

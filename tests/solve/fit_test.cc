@@ -9,6 +9,7 @@
 #include "pbnbrdf/brdf/analytic.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/scaled.h"
+#include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 
 namespace pbnbrdf {
@@ -250,6 +251,87 @@ TEST(FitBrdf, WithoutTheTermBrightMaterialsStayBright) {
   const Fit fit = FitBrdf(*too_bright, SmallProblem(), {});
   EXPECT_EQ(fit.summary.energy.rounds, 0);
   EXPECT_NEAR(AlbedoOf(fit.network), AlbedoOf(*too_bright), 0.02);
+}
+
+// A grey material, measured at random directions in one channel.
+ScatteredBrdf MeasuredInOneChannel(const Brdf& material, std::size_t count) {
+  ScatteredData data;
+  data.channels = 1;
+  for (const DirectionPair& pair : RandomPairs(count, /*seed=*/8)) {
+    Rgb value;
+    material.Evaluate({&pair, 1}, {&value, 1});
+    data.samples.push_back({pair, {value[0], value[0], value[0]}});
+  }
+  return ScatteredBrdf(std::move(data));
+}
+
+TEST(FitBrdf, OneChannelIsFittedByOneOutputWithEverySolver) {
+  const auto material = MakeBuiltin("rough-iron");
+  const ScatteredBrdf measured = MeasuredInOneChannel(*material, 3000);
+  FitProblem problem = SmallProblem();
+  problem.channels = measured.NumChannels();
+  problem.samples = 3000;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm, Solver::kLbfgs, Solver::kAdam}) {
+    FitOptions options;
+    options.solver = solver;
+    options.max_iterations = solver == Solver::kAdam ? 60 : 100;
+    options.adam.learning_rate = 5e-3;
+    options.adam.batch = 50;
+    const Fit fit = FitBrdf(measured, problem, options);
+    EXPECT_EQ(fit.network.NumChannels(), 1);
+    EXPECT_EQ(fit.network.weights().size(), 7u * 6 + 7);
+    const HeldOutErrors errors = MeasureErrors(measured, fit.network, 1000, 1);
+    EXPECT_LT(errors.mean_abs_log_error, 0.02) << NameOf(kSolvers, solver);
+    EXPECT_EQ(errors.samples, measured.Measurements().size() / 8);
+  }
+}
+
+TEST(FitBrdf, EnergyOfOneChannelIsConservedToo) {
+  const ScatteredBrdf bright = MeasuredInOneChannel(LambertBrdf({1.3, 1.3, 1.3}), 1000);
+  FitProblem problem = SmallProblem();
+  problem.channels = 1;
+  problem.energy_weight = 1.0;
+  problem.energy_theta = 32;
+  problem.energy_phi = 16;
+  for (Solver solver : {Solver::kTinyLm, Solver::kAdam}) {
+    FitOptions options;
+    options.solver = solver;
+    options.max_iterations = 30;
+    const Fit fit = FitBrdf(bright, problem, options);
+    EXPECT_LE(MeasureEnergy(fit.network).max_directional_albedo, 1.0 + 1e-6);
+    EXPECT_GT(AlbedoOf(fit.network), 0.9);
+  }
+}
+
+TEST(FitBrdf, ChannelsThatDontSuitAreNamed) {
+  FitProblem problem = SmallProblem();
+  problem.channels = 1;
+  EXPECT_THAT(ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, {}); }),
+              HasSubstr("channels: the material has 3, the network's 1 would be a guess"));
+  problem.chromaticity_weight = 0.1;
+  EXPECT_THAT(ErrorOf([&] { problem.Validate(); }),
+              HasSubstr("terms: chromaticity is of no use to a single channel"));
+}
+
+// What is measured at a few theta_i only leaves the rest of the hemisphere open.
+TEST(FitBrdf, GapsBetweenMeasurementsStayTame) {
+  const auto material = MakeBuiltin("rough-iron");
+  ScatteredData data;
+  for (double theta_i : {0.2, 1.0}) {
+    for (const DirectionPair& pair : RandomPairs(500, /*seed=*/9)) {
+      const DirectionPair turned = {FromSpherical(theta_i, 0.0), pair.wo};
+      Rgb value;
+      material->Evaluate({&turned, 1}, {&value, 1});
+      data.samples.push_back({turned, value});
+    }
+  }
+  FitProblem problem = SmallProblem();
+  problem.samples = 4000;
+  problem.hidden = {12, 12};
+  const ScatteredBrdf measured(data);
+  const Fit fit = FitBrdf(measured, problem, {});
+  EXPECT_LT(MeasureErrors(measured, fit.network, 1000, 1).mean_abs_log_error, 0.01);
+  EXPECT_LT(AlbedoOf(fit.network), 2.0);
 }
 
 class EnergyTest : public testing::TestWithParam<std::pair<Solver, double>> {};

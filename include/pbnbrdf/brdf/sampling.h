@@ -26,9 +26,13 @@ enum class SampleSet { kTraining, kHeldOut };
 // Samples at which a Brdf is known, one after the other: the same arguments give the same ones,
 // however many at a time.
 //
-// Of a Brdf that is a list of measurements these are the samples, in a random order, each once, and
-// `sampling` plays no part. One in 8 is held out, whatever the seed, together with those at the same
-// place (scattered.h): repeated, reciprocal and, if isotropic, mirrored ones.
+// Of a Brdf that is a list of measurements these are the samples, in a random order. One in 8 is held
+// out, whatever the seed, together with those at the same place (scattered.h): repeated, reciprocal
+// and, if isotropic, mirrored ones. To three training samples comes a fourth at angles drawn as those
+// of any other Brdf, with the value that the training samples interpolate to there: what is measured
+// along a few lines only leaves wide gaps, in which networks that nothing holds grow by orders of
+// magnitude. Where there are fewer than 3000, all are repeated until they aren't, so that gaps are
+// filled, too, without counting more than measurements.
 class SampleStream {
  public:
   // brdf must outlive this.
@@ -42,13 +46,15 @@ class SampleStream {
   std::size_t most() const;
 
  private:
+  void AddInterpolated();
+  DirectionPair DrawPair();
   void DrawAngles(std::size_t count, std::vector<BrdfSample>* samples);
 
   const Brdf& brdf_;
   SampleSet set_;
   Sampling sampling_;
   std::mt19937_64 random_;
-  std::vector<BrdfSample> measured_;  // of the set, shuffled
+  std::vector<BrdfSample> measured_;  // of the set, and interpolated ones, shuffled
   std::size_t next_ = 0;              // of them
 };
 

@@ -35,12 +35,10 @@ PointTree::Point ScatteredPlace(const DirectionPair& pair, bool isotropic);
 
 class ScatteredBrdf final : public Brdf {
  public:
-  static constexpr std::size_t kLeastSamples = 2;
   static constexpr double kMirrorGap = 0.05;
 
   // Leaves out samples with a direction that isn't above the horizon (a cosine of at most 1e-4) or a
-  // negative value; values are cut to kLargestValue. Throws Error if fewer than kLeastSamples are
-  // left.
+  // negative value; values are cut to kLargestValue. Throws Error if none is left.
   explicit ScatteredBrdf(ScatteredData data);
 
   // At a measurement it is that, or the mean of those at the same place.
