@@ -186,6 +186,16 @@ TEST(Rgl, IsKnownWhereItWasMeasured) {
   EXPECT_FALSE(brdf.IsKnown({beyond, inside}));
 }
 
+TEST(Rgl, OneWavelengthIsOneChannel) {
+  TemporaryFolder folder;
+  WriteBytes(folder / "a.bsdf", ConstantFile(1, {0.5f}).Bytes());
+  const RglBrdf brdf = RglBrdf::Read(folder / "a.bsdf");
+  EXPECT_EQ(brdf.NumChannels(), 1);
+  const Rgb value = ValueAt(brdf, {{0, 0, 1}, {0, 0, 1}});
+  EXPECT_NEAR(value[0], 0.5 / (4 * kPi), 1e-7);
+  EXPECT_EQ(value[2], value[0]);
+}
+
 TEST(Rgl, AFileIsKnownByItsContentToo) {
   TemporaryFolder folder;
   WriteBytes(folder / "a.dat", ConstantFile(1, {1, 1, 1}).Bytes());

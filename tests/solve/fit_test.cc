@@ -286,20 +286,30 @@ TEST(FitBrdf, OneChannelIsFittedByOneOutputWithEverySolver) {
   }
 }
 
+// By the rounds of the energy term, and, from a network that shines by itself, by the correction.
 TEST(FitBrdf, EnergyOfOneChannelIsConservedToo) {
   const ScatteredBrdf bright = MeasuredInOneChannel(LambertBrdf({1.3, 1.3, 1.3}), 1000);
   FitProblem problem = SmallProblem();
   problem.channels = 1;
+  problem.hidden = {4};
   problem.energy_weight = 1.0;
   problem.energy_theta = 32;
   problem.energy_phi = 16;
-  for (Solver solver : {Solver::kTinyLm, Solver::kAdam}) {
-    FitOptions options;
-    options.solver = solver;
-    options.max_iterations = 30;
+  FitOptions rounds, correction;
+  rounds.max_iterations = 30;
+  correction.solver = Solver::kAdam;
+  correction.adam.learning_rate = 1e-6;
+  correction.max_iterations = 3;
+  correction.initial_weights.assign(problem.Shape().num_weights(), 0.0);
+  correction.initial_weights.back() = std::log1p(1.3 / kPi);
+  for (const FitOptions& options : {rounds, correction}) {
     const Fit fit = FitBrdf(bright, problem, options);
+    EXPECT_GT(fit.summary.energy.first_max_albedo, 1.25);
     EXPECT_LE(MeasureEnergy(fit.network).max_directional_albedo, 1.0 + 1e-6);
     EXPECT_GT(AlbedoOf(fit.network), 0.9);
+    EXPECT_GT(options.solver == Solver::kAdam ? fit.summary.energy.correction
+                                              : double(fit.summary.energy.rounds),
+              0.05);
   }
 }
 

@@ -42,6 +42,7 @@ class RglBrdf final : public Brdf {
   bool IsKnown(const DirectionPair& pair) const override;
 
   bool IsIsotropic() const override;
+  int NumChannels() const override { return wavelengths().size() == 1 ? 1 : 3; }
   std::string Description() const override;
 
   // nm, ascending; none of an RGB file.
