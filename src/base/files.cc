@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -25,6 +26,19 @@ void WriteStandardOutput(std::string_view content) {
       std::fflush(stdout) != 0) {
     Fail("standard output: cannot write: ", Reason());
   }
+}
+
+// Exactly `size` bytes from the file's beginning.
+std::string ReadBytes(const std::string& path, std::uintmax_t size) {
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) Fail(path, ": cannot read: ", Reason());
+  std::string bytes(size, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size) {
+    Fail(path, ": cannot read: got ", in.gcount(), " of ", size, " bytes");
+  }
+  return bytes;
 }
 
 // False, with errno set, if not all of it could be written.
@@ -102,15 +116,11 @@ std::uintmax_t FileSize(const std::string& path) {
 std::string ReadFile(const std::string& path, std::uintmax_t limit) {
   const std::uintmax_t size = FileSize(path);
   if (size > limit) Fail(path, ": ", size, " bytes, at most ", limit, " were expected");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) Fail(path, ": cannot read: ", Reason());
-  std::string bytes(size, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(in.gcount()) != size) {
-    Fail(path, ": cannot read: got ", in.gcount(), " of ", size, " bytes");
-  }
-  return bytes;
+  return ReadBytes(path, size);
+}
+
+std::string ReadStart(const std::string& path, std::size_t most) {
+  return ReadBytes(path, std::min<std::uintmax_t>(FileSize(path), most));
 }
 
 void WriteFile(const std::string& path, std::string_view content) {

@@ -4,11 +4,34 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/analytic.h"
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/brdf/rgl.h"
+#include "pbnbrdf/brdf/scattered_files.h"
 #include "pbnbrdf/brdf/sgd.h"
+#include "pbnbrdf/brdf/tensor_file.h"
 
 namespace pbnbrdf {
+namespace {
+
+constexpr std::size_t kStart = 4096;  // bytes that tell what a file is
+
+// Its name's end says what it is, else its first bytes.
+std::unique_ptr<Brdf> OpenFile(const std::string& path) {
+  if (path.ends_with(".csv")) return std::make_unique<ScatteredBrdf>(ReadScatteredCsv(path));
+  if (path.ends_with(".binary")) return std::make_unique<MerlBrdf>(MerlBrdf::Read(path));
+  const std::string start = ReadStart(path, kStart);
+  if (path.ends_with(".bsdf") || start.starts_with(TensorFile::kMagic)) {
+    return std::make_unique<RglBrdf>(RglBrdf::Read(path));
+  }
+  if (path.ends_with(".alta") || path.ends_with(".dat") || LooksLikeAlta(start)) {
+    return std::make_unique<ScatteredBrdf>(ReadAlta(path));
+  }
+  return std::make_unique<MerlBrdf>(MerlBrdf::Read(path));
+}
+
+}  // namespace
 
 std::unique_ptr<Brdf> OpenMeasuredBrdf(const std::string& source) {
   constexpr std::string_view kBuiltin = "builtin:", kSgd = "sgd:";
@@ -27,7 +50,7 @@ std::unique_ptr<Brdf> OpenMeasuredBrdf(const std::string& source) {
   if (NamesAnalyticModel(source)) {
     return std::make_unique<AnalyticBrdf>(AnalyticBrdf::FromText(source));
   }
-  return std::make_unique<MerlBrdf>(MerlBrdf::Read(source));
+  return OpenFile(source);
 }
 
 }  // namespace pbnbrdf

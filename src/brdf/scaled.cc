@@ -34,9 +34,17 @@ ScaledBrdf::ScaledBrdf(std::unique_ptr<Brdf> source, double factor)
 void ScaledBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                    std::span<Rgb> values) const {
   source_->EvaluateUnclipped(pairs, values);
-  for (Rgb& value : values) {
-    for (double& channel : value) channel = std::min(channel * factor_, kLargestValue);
-  }
+  for (Rgb& value : values) Scale(&value);
+}
+
+std::vector<BrdfSample> ScaledBrdf::Measurements() const {
+  std::vector<BrdfSample> samples = source_->Measurements();
+  for (BrdfSample& sample : samples) Scale(&sample.value);
+  return samples;
+}
+
+void ScaledBrdf::Scale(Rgb* value) const {
+  for (double& channel : *value) channel = std::min(channel * factor_, kLargestValue);
 }
 
 std::string ScaledBrdf::Description() const {

@@ -16,6 +16,13 @@ Command InfoCommand();
 inline constexpr char kSourceNotes[] =
     "Sources of reflectance:\n"
     "  FILE.binary                  a table in the format of the MERL BRDF database\n"
+    "  FILE.bsdf                    a measurement of the RGL material database, RGB or spectral\n"
+    "  FILE.alta, FILE.dat          measurements in the text format of ALTA\n"
+    "  FILE.csv                     measurements at any directions: theta_i,phi_i,theta_o,phi_o\n"
+    "                               (radians; theta_i_deg, ...: degrees) or "
+    "wi_x,wi_y,wi_z,wo_x,...,\n"
+    "                               and value or r,g,b: f in 1/sr. A line '# isotropic' or\n"
+    "                               '# anisotropic' says which, else phi_i that differ do\n"
     "  sgd:PARAMETERS.csv#MATERIAL  the shifted gamma distribution model (Bagher et al. 2012)\n"
     "  builtin:NAME                 a material that ships with the program: pbnbrdf info builtin:\n"
     "  MODEL:NAME=VALUE,...         an analytic model with its parameters, as in\n"

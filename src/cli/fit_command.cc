@@ -145,7 +145,7 @@ int RunFit(const std::string&) {
   if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
   std::signal(SIGINT, OnInterrupt);
   const std::unique_ptr<Brdf> material = OpenMaterial();
-  ResolveEncoding(*material, &flags.problem);
+  ResolveNetwork(*material, &flags.problem);
   if (!FLAGS_init.empty()) {
     flags.options.initial_weights = WeightsOf(FLAGS_init, flags.problem.Shape());
     ValidateFit(flags.problem, flags.options);

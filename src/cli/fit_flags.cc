@@ -154,7 +154,8 @@ FitFlags ParseFitFlags() {
   }
 }
 
-void ResolveEncoding(const Brdf& material, FitProblem* problem) {
+void ResolveNetwork(const Brdf& material, FitProblem* problem) {
+  problem->channels = material.NumChannels();
   problem->encoding = ParseEncoding().value_or(EncodingFor(material));
   FLAGS_encoding = NameOf(kEncodings, problem->encoding);
 }

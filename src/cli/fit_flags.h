@@ -19,8 +19,8 @@ struct FitFlags {
 // Throws UsageError if a flag's value is none that the flag takes, or flags don't go together.
 FitFlags ParseFitFlags();
 
-// Settles what --encoding=auto stands for, now that the material is known: in the problem, and in
-// the flag, so that the flagfile of a fit names it.
-void ResolveEncoding(const Brdf& material, FitProblem* problem);
+// Settles what depends on the material, now that it is known: its channels, and what --encoding=auto
+// stands for, in the problem and in the flag, so that the flagfile of a fit names it.
+void ResolveNetwork(const Brdf& material, FitProblem* problem);
 
 }  // namespace pbnbrdf::cli

@@ -1,5 +1,7 @@
 #include "pbnbrdf/network/batched_mlp.h"
 
+#include <algorithm>
+
 #include "pbnbrdf/kernels/passes.h"
 #include "pbnbrdf/kernels/products.h"
 
@@ -40,6 +42,8 @@ BatchedMlp<T>::BatchedMlp(const NetworkShape& shape, int rows)
     AlignedVector<T>& inputs = inputs_by_sample_.emplace_back(kBatch * stride + kernels::kPad);
     for (int n = 0; n < kBatch; ++n) inputs[n * stride + in] = T(1);
   }
+  activations_.back().resize(kChannels * kBatch);
+  if (HasOneOutput()) channel_gradients_.resize(rows * kChannels * kBatch);
 }
 
 template <typename T>
@@ -57,10 +61,28 @@ void BatchedMlp<T>::Forward(const T* weights, const T* input) {
     }
     input = output;
   }
+  if (HasOneOutput()) RepeatOutput();
+}
+
+template <typename T>
+void BatchedMlp<T>::RepeatOutput() {
+  T* z = output();
+  for (int c = 1; c < kChannels; ++c) std::copy_n(z, kBatch, z + c * kBatch);
+}
+
+template <typename T>
+void BatchedMlp<T>::SumChannelGradients() {
+  static_assert(kChannels == 3);
+  for (int row = 0; row < rows_; ++row) {
+    const T* from = channel_gradients_.data() + row * kChannels * kBatch;
+    T* sum = deltas_.back().data() + row * kBatch;
+    for (int n = 0; n < kBatch; ++n) sum[n] = from[n] + from[kBatch + n] + from[2 * kBatch + n];
+  }
 }
 
 template <typename T>
 void BatchedMlp<T>::Backward(const T* weights) {
+  if (HasOneOutput()) SumChannelGradients();
   for (int row = 0; row < rows_; ++row) BackwardRow(weights, row);
 }
 
@@ -70,7 +92,7 @@ void BatchedMlp<T>::BackwardRow(const T* weights, int row) {
     const AlignedVector<T>& y = activations_[layer - 1];
     T* delta = deltas_[layer - 1].data() + row * y.size();
     kernels::DenseTransposed(weights + shape_.offset(layer), shape_.out(layer), shape_.in(layer),
-                             deltas_[layer].data() + row * activations_[layer].size(), delta);
+                             deltas_[layer].data() + row * shape_.out(layer) * kBatch, delta);
     MultiplySlopes(shape_.activation(), y.data(), y.size(), delta);
   }
 }

@@ -4,7 +4,8 @@
 
 namespace pbnbrdf {
 
-NetworkShape::NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation)
+NetworkShape::NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation,
+                           int outputs)
     : encoding_(encoding), activation_(activation), sizes_{kEncodedSize}, offsets_{0} {
   if (hidden.empty() || hidden.size() >= kMostLayers) {
     Fail("hidden: ", hidden.size(), " layers; must be 1 to ", kMostLayers - 1);
@@ -15,7 +16,10 @@ NetworkShape::NetworkShape(Encoding encoding, std::vector<int> hidden, Activatio
     }
     sizes_.push_back(size);
   }
-  sizes_.push_back(kChannels);
+  if (outputs != 1 && outputs != kChannels) {
+    Fail("channels: ", outputs, " outputs; must be 1 or ", kChannels);
+  }
+  sizes_.push_back(outputs);
   for (int layer = 0; layer < num_layers(); ++layer) {
     offsets_.push_back(offsets_.back() + block_size(layer));
   }

@@ -34,8 +34,8 @@ const Tensor& Require(const std::string& path, const SafetensorsFile& file, cons
   return found->second;
 }
 
-// The hidden layers' sizes, from the biases fc1 ... fc(L-1); the last layer's is checked later.
-std::vector<int> HiddenSizes(const std::string& path, const SafetensorsFile& file) {
+// The layers' sizes, from the biases fc1 ... fcL.
+std::vector<int> LayerSizes(const std::string& path, const SafetensorsFile& file) {
   std::vector<int> sizes;
   for (int layer = 0; file.tensors.count(BiasName(layer)) != 0; ++layer) {
     const Tensor& bias = file.tensors.at(BiasName(layer));
@@ -45,7 +45,6 @@ std::vector<int> HiddenSizes(const std::string& path, const SafetensorsFile& fil
   }
   if (sizes.size() < 2)
     Fail(path, ": not a fitted network: tensors fc1.bias, fc2.bias are missing");
-  sizes.pop_back();
   return sizes;
 }
 
@@ -55,8 +54,11 @@ NetworkShape ReadShape(const std::string& path, const SafetensorsFile& file) {
   const std::string& encoding = Require(path, file.metadata, "encoding");
   const std::string& activation = Require(path, file.metadata, "activation");
   try {
-    return NetworkShape(ParseName(kEncodings, "encoding", encoding), HiddenSizes(path, file),
-                        ParseName(kActivations, "activation", activation));
+    std::vector<int> hidden = LayerSizes(path, file);
+    const int outputs = hidden.back();
+    hidden.pop_back();
+    return NetworkShape(ParseName(kEncodings, "encoding", encoding), std::move(hidden),
+                        ParseName(kActivations, "activation", activation), outputs);
   } catch (const Error& error) {
     Fail(path, ": ", error.what());
   }
@@ -77,7 +79,8 @@ NeuralBrdf::NeuralBrdf(const NetworkShape& shape, std::vector<double> weights, M
   metadata_["encoding"] = NameOf(kEncodings, shape.encoding());
   metadata_["activation"] = NameOf(kActivations, shape.activation());
   metadata_["output"] = kOutputUnit;
-  metadata_["units"] = "linear RGB, 1/sr, without the cosine";
+  metadata_["units"] =
+      StrCat(shape.num_outputs() == 1 ? "one channel" : "linear RGB", ", 1/sr, without the cosine");
 }
 
 NeuralBrdf NeuralBrdf::Read(const std::string& path) {

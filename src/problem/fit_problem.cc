@@ -36,6 +36,9 @@ void FitProblem::Validate() const {
   if (log_weight + chromaticity_weight == 0.0) {
     Fail("terms: log or chromaticity must be among them, with a weight > 0");
   }
+  if (channels == 1 && chromaticity_weight > 0.0) {
+    Fail("terms: chromaticity is of no use to a single channel");
+  }
   if (!(loss_scale > 0.0) || !std::isfinite(loss_scale)) {
     Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
   }

@@ -130,7 +130,7 @@ Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weigh
       largest = Largest(LargestAlbedos(profile));
       if (!(largest > bound)) break;
       const Rgb lowering = Lowering(network, profile, bound);
-      for (int c = 0; c < 3; ++c) {
+      for (int c = 0; c < shape.num_outputs(); ++c) {
         if (lowering[c] == 0.0) continue;
         const double step = lowering[c] + std::ldexp(kLeastStep, k);  // more, if it goes on and on
         sum[c] += step;

@@ -47,8 +47,8 @@ class Fitter {
  public:
   Fitter(const Brdf& material, const FitProblem& problem, const FitOptions& options)
       : options_(options),
-        most_samples_(problem.samples),
         stream_(material, SampleSet::kTraining, problem.sampling, problem.seed),
+        most_samples_(std::min(problem.samples, stream_.most())),
         validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling,
                                         kValidationSamples, problem.seed + kValidationSeed)),
         curvature_samples_(options.curvature_samples),
@@ -294,8 +294,8 @@ class Fitter {
 
   Stopwatch stopwatch_;
   const FitOptions& options_;
-  std::size_t most_samples_;
   SampleStream stream_;
+  std::size_t most_samples_;
   std::vector<BrdfSample> samples_, validation_samples_;
   std::size_t curvature_samples_;
   std::vector<EnergyStratum> strata_;
@@ -364,6 +364,10 @@ Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& o
   if (material.IsIsotropic() && !IsIsotropic(problem.encoding)) {
     Fail("encoding: ", NameOf(kEncodings, problem.encoding),
          " is for anisotropic materials; an isotropic one has samples at phi_h = 0 only");
+  }
+  if (problem.channels < material.NumChannels()) {
+    Fail("channels: the material has ", material.NumChannels(), ", the network's ",
+         problem.channels, " would be a guess");
   }
   const int most_threads = tbb::this_task_arena::max_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)

@@ -134,11 +134,82 @@ TEST(Merl, BadFilesAreNamed) {
   EXPECT_THAT(read(good + "x"), HasSubstr("expected 34992012"));
   std::string other = good;
   other[0] = 91;
-  EXPECT_THAT(read(other), HasSubstr("its header says 91 x 90 x 180, expected 90 x 90 x 180"));
+  EXPECT_THAT(read(other),
+              HasSubstr("truncated MERL file: 34992012 bytes, expected 35380812 for the "
+                        "header's 91 x 90 x 180"));
   std::string nan = good;
   SetBin(&nan, 5, std::nan(""));
   EXPECT_THAT(read(nan), HasSubstr("channel R of bin 5 is not a finite number"));
   EXPECT_THAT(read(FileOf(-1.0)), HasSubstr("no valid bin"));
+}
+
+// A small file of another grid, its bins 1, 2, 3, ... / 1500 in R; G and B 0.
+std::string SmallFile(std::int32_t theta_h, std::int32_t theta_d, std::int32_t phi_d) {
+  const std::int32_t dimensions[3] = {theta_h, theta_d, phi_d};
+  std::vector<double> planes(3u * theta_h * theta_d * phi_d, 0.0);
+  for (std::size_t bin = 0; bin < planes.size() / 3; ++bin) planes[bin] = double(bin + 1);
+  std::string bytes(reinterpret_cast<const char*>(dimensions), sizeof(dimensions));
+  return bytes.append(reinterpret_cast<const char*>(planes.data()), 8 * planes.size());
+}
+
+TEST(Merl, OtherGridsAreReadAndWritten) {
+  TemporaryFolder folder;
+  const std::string bytes = SmallFile(10, 5, 8);
+  WriteBytes(folder / "a.binary", bytes);
+  const MerlBrdf table = MerlBrdf::Read(folder / "a.binary");
+  EXPECT_EQ(table.Description(), "MERL table 10 x 5 x 8, 400 of 400 bins valid");
+  // Row 3, column 2, phi_d of bin 5; the corner itself and half the way to bin 6, once more at + pi.
+  const double corner = (3 * 5 + 2) * 8 + 5 + 1;
+  for (double turn : {0.0, kPi}) {
+    const auto value = [&](double p) {
+      return 1500.0 * ValueAt(table, FromAngles({.theta_h = kPi / 2 * 0.3 * 0.3,
+                                                 .theta_d = kPi / 2 * 2 / 5.0,
+                                                 .phi_d = kPi * p / 8 + turn}))[0];
+    };
+    EXPECT_NEAR(value(5.0), corner, 1e-5);
+    EXPECT_NEAR(value(5.5), corner + 0.5, 1e-5);
+    EXPECT_NEAR(value(7.5), corner + 2 - 3.5, 1e-5);  // half the way round to bin 0
+  }
+  table.Write(folder / "b.binary");
+  std::ifstream b(folder / "b.binary", std::ios::binary);
+  EXPECT_TRUE((std::string{std::istreambuf_iterator<char>(b), {}} == bytes));
+}
+
+TEST(Merl, ThreeHundredAndSixtyBinsAreTheWholeCircle) {
+  TemporaryFolder folder;
+  WriteBytes(folder / "a.binary", SmallFile(1, 2, 360));
+  const MerlBrdf table = MerlBrdf::Read(folder / "a.binary");
+  for (double degrees : {0.0, 30.5, 179.0, 180.0, 210.5, 359.0}) {
+    const DirectionPair pair =
+        FromAngles({.theta_h = 0.01, .theta_d = kPi / 4, .phi_d = kPi * degrees / 180});
+    EXPECT_NEAR(1500.0 * ValueAt(table, pair)[0], 361.0 + degrees, 1e-5);
+  }
+}
+
+TEST(Merl, HeadersThatLieAreNamed) {
+  TemporaryFolder folder;
+  const std::string path = folder / "m.binary", good = SmallFile(2, 3, 4);
+  const auto with = [&](std::int32_t theta_h, std::int32_t theta_d, std::int32_t phi_d) {
+    const std::int32_t dimensions[3] = {theta_h, theta_d, phi_d};
+    std::string bytes = good;
+    std::memcpy(bytes.data(), dimensions, sizeof(dimensions));
+    WriteBytes(path, bytes);
+    return ErrorOf([&] { MerlBrdf::Read(path); });
+  };
+  EXPECT_EQ(with(2, 3, 4), "");
+  EXPECT_EQ(with(4, 3, 2), "");
+  EXPECT_THAT(with(0, 3, 4), HasSubstr("its header says 0 x 3 x 4, such as 90 x 90 x 180"));
+  EXPECT_THAT(with(-2, -3, 4), HasSubstr("its header says -2 x -3 x 4"));
+  EXPECT_THAT(with(2, 3, 3), HasSubstr("588 bytes, expected 444 for the header's 2 x 3 x 3"));
+  EXPECT_THAT(with(2, 3, 5), HasSubstr("truncated MERL file: 588 bytes, expected 732"));
+  const std::int32_t most = 0x7fffffff;
+  EXPECT_THAT(with(most, most, most), HasSubstr("too large a table"));
+  EXPECT_THAT(with(most, 1, 1), HasSubstr("too large a table"));
+  EXPECT_THAT(with(1 << 16, 1 << 16, 1 << 16), HasSubstr("too large a table"));
+  for (std::size_t k = 0; k < 20; ++k) {
+    WriteBytes(path, good.substr(0, good.size() * k / 20));
+    EXPECT_THAT(ErrorOf([&] { MerlBrdf::Read(path); }), testing::StartsWith(path + ": ")) << k;
+  }
 }
 
 }  // namespace

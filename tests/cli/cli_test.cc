@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "brdf/rgl_writer.h"
 #include "network/npy_writer.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
@@ -123,7 +124,7 @@ TEST_F(Cli, BadMaterialsExitWith1) {
   ExpectError(fit("builtin:gold"), 1, "builtin:gold is not one of spectralon");
   ExpectError(fit("sgd:" + Path("none.csv") + "#x"), 1, "none.csv: no such file");
   WriteBytes(Path("short.binary"), std::string(100, '\0'));
-  ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, expected 90 x 90 x 180");
+  ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, such as 90 x 90 x 180");
   WriteBytes(Path("bad.safetensors"), std::string(100, '\xff'));
   ExpectError(fit(Path("bad.safetensors")), 1, "bad.safetensors: not a safetensors file");
   ExpectError("tabulate --material=" + Path("none.binary") + " --out=" + Path("out"), 1,
@@ -424,6 +425,73 @@ TEST_F(Cli, APublishedNetworkIsAMaterialAndAFit) {
   EXPECT_EQ(Run("fit --material=" + network + kQuick + "--out=" + Path("b.safetensors")).status, 0);
   WriteBytes(Path("bad.h5"), "x");
   ExpectError("info " + Path("bad.h5"), 1, "bad.h5: not an HDF5 file");
+}
+
+// Every command takes it: info, fit, eval, tabulate and values at one pair.
+TEST_F(Cli, ARglFileIsAMaterial) {
+  WriteBytes(Path("a.bsdf"), ConstantFile(1, {0.8f, 0.4f, 0.2f}).Bytes());
+  const std::string material = " --material=" + Path("a.bsdf");
+  EXPECT_THAT(Run("info " + Path("a.bsdf")).out, HasSubstr("RGL measurement, isotropic, RGB"));
+  ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
+  const Result eval =
+      Run("eval --json --eval_samples=500 --fit=" + Path("a.safetensors") + material);
+  EXPECT_EQ(json::parse(eval.out)["samples"], 500);
+  ASSERT_EQ(Run("tabulate" + material + " --out=" + Path("a.binary")).status, 0);
+  // The table is reciprocal, this file isn't: equal angles.
+  WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.4,0,0.4,1\n");
+  for (const std::string& source : {material, " --material=" + Path("a.binary")}) {
+    const Result values = Run("values" + source + " --out=- --directions=" + Path("pairs.csv"));
+    const std::vector<std::string> row = Split(Split(values.out, '\n')[1], ',');
+    EXPECT_NEAR(ParseNumber("r", row[4]), 0.8 / (4 * kPi * std::cos(0.4)), 1e-4);
+    EXPECT_NEAR(ParseNumber("b", row[6]), 0.2 / (4 * kPi * std::cos(0.4)), 1e-4);
+  }
+  WriteBytes(Path("bad.bsdf"), "tensor");
+  ExpectError("info " + Path("bad.bsdf"), 1, "bad.bsdf: not a tensor file");
+}
+
+// A Lambertian of albedo 0.5, in one channel, by angles or as what `values` itself writes.
+TEST_F(Cli, ScatteredMeasurementsAreAMaterial) {
+  std::string csv = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n";
+  for (int theta_i = 5; theta_i < 85; theta_i += 10) {
+    for (int theta_o = 0; theta_o < 85; theta_o += 10) {
+      for (int phi = 0; phi < 360; phi += 30) {
+        csv += StrCat(theta_i, ",0,", theta_o, ",", phi, ",", 0.5 / kPi, "\n");
+      }
+    }
+  }
+  WriteBytes(Path("a.csv"), csv);
+  const std::string material = " --material=" + Path("a.csv");
+  EXPECT_THAT(Run("info " + Path("a.csv")).out,
+              HasSubstr("CSV measurements, isotropic, one channel, 864 measurements"));
+  const Result fit =
+      Run("fit" + material + kQuick + "--max_iterations=20 --out=" + Path("a.safetensors") +
+          " --summary=" + Path("a.json"));
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("neural BRDF 6-5-1 tanh, merl encoding, 41 weights"));
+  const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  EXPECT_EQ(summary["samples"], 864 / 8);  // all that are held out
+  EXPECT_LT(summary["mean_abs_log_error"], 0.001);
+  const Result eval = Run("eval --json --fit=" + Path("a.safetensors") + material);
+  EXPECT_EQ(json::parse(eval.out)["samples"], 864 / 8);
+  EXPECT_EQ(Run("tabulate" + material + " --out=" + Path("a.binary")).status, 0);
+
+  WriteBytes(Path("pairs.csv"),
+             "theta_i,phi_i,theta_o,phi_o\n0.3,0,0.5,1\n0.2,0,0.5,1\n0.1,0,0.5,1\n");
+  ASSERT_EQ(Run("values" + material + " --out=" + Path("values.csv") +
+                " --directions=" + Path("pairs.csv"))
+                .status,
+            0);
+  EXPECT_THAT(Run("info " + Path("values.csv")).out, HasSubstr("RGB, 3 measurements"));
+
+  ExpectError("fit" + material + " --terms=log,chromaticity --out=" + Path("out"), 1,
+              "a.csv: terms: chromaticity is of no use to a single channel");
+  ExpectError("fit" + material + " --init=" + Path("a.safetensors") + " --out=" + Path("out"), 1,
+              "a network 6-5-1 tanh, merl encoding; --init needs 6-21-21-1 tanh");
+  WriteBytes(Path("bad.csv"), csv + "5,0,5");
+  ExpectError("info " + Path("bad.csv"), 1, "bad.csv: line 866: the last line has no end");
+  WriteBytes(Path("bad.alta"), "#DIM 1 1\n");
+  ExpectError("tabulate --material=" + Path("bad.alta") + " --out=" + Path("out"), 1,
+              "bad.alta: no measurements in it");
 }
 
 // An albedo of 0.99 is asked to be 0.495: half of everything.

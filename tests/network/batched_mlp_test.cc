@@ -111,6 +111,41 @@ TEST_P(BatchedMlpTest, SingleAgreesWithDouble) {
   }
 }
 
+// As a network of three equal outputs, whose gradients add up.
+TEST_P(BatchedMlpTest, OneOutputStandsForAllChannels) {
+  const NetworkShape one(Encoding::kMultiscale, {5, 4}, GetParam(), 1);
+  EXPECT_EQ(one.num_weights(), kWeights - 2 * 5);
+  const int last = shape_.offset(2);
+  const std::vector<double> weights(weights_.begin(), weights_.begin() + one.num_weights());
+  std::vector<double> tied = weights;
+  for (int c = 1; c < kChannels; ++c) {
+    tied.insert(tied.end(), weights.begin() + last, weights.end());
+  }
+  const auto gradients = RandomNumbers(2 * kChannels * kBatch, -1.0, 1.0, /*seed=*/3);
+  const auto run = [&](const NetworkShape& shape, const std::vector<double>& w, int row) {
+    BatchedMlp<double> mlp(shape, 2);
+    mlp.Forward(w.data(), input_.data());
+    for (int r = 0; r < 2; ++r) {
+      std::copy_n(&gradients[r * kChannels * kBatch], kChannels * kBatch, mlp.output_gradient(r));
+    }
+    mlp.Backward(w.data());
+    std::vector<double> gradient(shape.num_weights());
+    mlp.AddWeightGradient(row, gradient.data());
+    gradient.insert(gradient.end(), mlp.output(), mlp.output() + kChannels * kBatch);
+    return gradient;
+  };
+  for (int row : {0, 1}) {
+    const std::vector<double> found = run(one, weights, row), expected = run(shape_, tied, row);
+    for (int i = 0; i < last; ++i) EXPECT_NEAR(found[i], expected[i], 1e-12) << i;
+    for (int i = last; i < last + 5; ++i) {
+      EXPECT_NEAR(found[i], expected[i] + expected[i + 5] + expected[i + 10], 1e-12) << i;
+    }
+    for (int k = 0; k < kChannels * kBatch; ++k) {
+      EXPECT_EQ(found[one.num_weights() + k], expected[kWeights + k]) << k;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Activations, BatchedMlpTest,
                          testing::Values(Activation::kTanh, Activation::kRelu),
                          [](const auto& test) {

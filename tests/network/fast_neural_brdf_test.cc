@@ -54,6 +54,8 @@ TEST(FastNeuralBrdf, AgreesWithDoublePrecision) {
     }
   }
   ExpectAgreement(RandomNetwork(Encoding::kMultiscale, Activation::kTanh, {5}), pairs);
+  const NetworkShape one(Encoding::kMerl, {9}, Activation::kTanh, /*outputs=*/1);
+  ExpectAgreement(NeuralBrdf(one, RandomWeights(one, 0.7, /*seed=*/1)), pairs);
   ExpectAgreement(RandomNetwork(Encoding::kMultiscale, Activation::kTanh, {1, 40, 7}, 0.3), pairs);
 }
 

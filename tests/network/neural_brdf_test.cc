@@ -119,6 +119,34 @@ TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {
               HasSubstr("7 tensors"));
 }
 
+TEST(NeuralBrdf, OneOutputIsAllThreeChannels) {
+  TemporaryFolder folder;
+  const NetworkShape shape(Encoding::kMerl, {21, 21}, Activation::kTanh, 1);
+  EXPECT_EQ(shape.num_weights(), 147 + 462 + 22);
+  const NeuralBrdf network(shape, RandomWeights(shape, 0.5, /*seed=*/3));
+  EXPECT_EQ(network.NumChannels(), 1);
+  EXPECT_THAT(network.Description(), HasSubstr("6-21-21-1 tanh"));
+  network.Write(folder / "n.safetensors");
+  const SafetensorsFile file = ReadSafetensors(folder / "n.safetensors");
+  EXPECT_EQ(file.tensors.at("fc3.weight").shape, (std::vector<std::int64_t>{1, 21}));
+  EXPECT_EQ(file.metadata.at("units"), "one channel, 1/sr, without the cosine");
+  const NeuralBrdf read = NeuralBrdf::Read(folder / "n.safetensors");
+  EXPECT_EQ(read.weights(), network.weights());
+  EXPECT_EQ(read.NumChannels(), 1);
+  const std::vector<DirectionPair> pairs = RandomPairs(300, /*seed=*/4);
+  std::vector<Rgb> values(pairs.size());
+  read.EvaluateUnclipped(pairs, values);
+  double largest = 0.0;
+  for (const Rgb& value : values) {
+    EXPECT_EQ(value[1], value[0]);
+    EXPECT_EQ(value[2], value[0]);
+    largest = std::max(largest, value[0]);
+  }
+  EXPECT_GT(largest, 0.0);
+  EXPECT_THAT(ErrorOf([] { NetworkShape(Encoding::kMerl, {3}, Activation::kTanh, 2); }),
+              HasSubstr("channels: 2 outputs; must be 1 or 3"));
+}
+
 TEST(NeuralBrdf, RefusesWeightsThatDontFit) {
   const NetworkShape shape(Encoding::kMultiscale, {21, 21}, Activation::kTanh);
   EXPECT_EQ(shape.num_weights(), 675);

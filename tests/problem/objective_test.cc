@@ -51,7 +51,7 @@ Case MakeCase(const std::string& name, FitProblem problem, double output_bias = 
               void (*change)(const NetworkShape&, std::vector<double>*) = nullptr) {
   const NetworkShape shape = problem.Shape();
   std::vector<double> weights = RandomWeights(shape, 0.8, /*seed=*/11);
-  for (int c = 1; c <= 3; ++c) {
+  for (int c = 1; c <= shape.num_outputs(); ++c) {
     const int last = shape.num_layers() - 1;
     weights[shape.offset(last) + c * (shape.in(last) + 1) - 1] = output_bias;
   }
@@ -93,6 +93,9 @@ std::vector<Case> Cases() {
     problem.loss_scale = 0.1;
     cases.push_back(MakeCase(StrCat("AllTerms_", NameOf(kLosses, loss)), problem));
   }
+  problem.channels = 1;
+  cases.push_back(MakeCase("OneOutput", problem));
+  problem.channels = 3;
   problem.encoding = Encoding::kReciprocal;
   cases.push_back(MakeCase("Reciprocal", problem));
   problem.hidden = {21, 21};

@@ -6,6 +6,7 @@
 #include "pbnbrdf/brdf/scaled.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/solve/fit.h"
+#include "solve/one_channel.h"
 #include "solve/small_problem.h"
 
 namespace pbnbrdf {
@@ -122,6 +123,33 @@ TEST(EnergyConservation, DarkMaterialsCarryNoEnergyTerm) {
   EXPECT_EQ(with.network.weights(), without.network.weights());
   EXPECT_EQ(with.summary.energy.work.albedos, 0);
   EXPECT_LT(with.summary.energy.first_max_albedo, 0.9);
+}
+
+// By the rounds of the energy term, and, from a network that shines by itself, by the correction.
+TEST(EnergyConservation, EnergyOfOneChannelIsConservedToo) {
+  const ScatteredBrdf bright = MeasuredInOneChannel(LambertBrdf({1.3, 1.3, 1.3}), 1000);
+  FitProblem problem = SmallProblem();
+  problem.channels = 1;
+  problem.hidden = {4};
+  problem.energy_weight = 1.0;
+  problem.energy_theta = 32;
+  problem.energy_phi = 16;
+  FitOptions rounds, correction;
+  rounds.max_iterations = 30;
+  correction.solver = Solver::kAdam;
+  correction.adam.learning_rate = 1e-6;
+  correction.max_iterations = 3;
+  correction.initial_weights.assign(problem.Shape().num_weights(), 0.0);
+  correction.initial_weights.back() = std::log1p(1.3 / kPi);
+  for (const FitOptions& options : {rounds, correction}) {
+    const Fit fit = FitBrdf(bright, problem, options);
+    EXPECT_GT(fit.summary.energy.first_max_albedo, 1.25);
+    EXPECT_LE(MeasureEnergy(fit.network).max_directional_albedo, 1.0 + 1e-6);
+    EXPECT_GT(AlbedoOf(fit.network), 0.9);
+    EXPECT_GT(options.solver == Solver::kAdam ? fit.summary.energy.correction
+                                              : double(fit.summary.energy.rounds),
+              0.05);
+  }
 }
 
 }  // namespace

@@ -5,8 +5,12 @@
 
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"
+#include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/analytic.h"
 #include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/brdf/scattered.h"
+#include "pbnbrdf/metrics/brdf_metrics.h"
+#include "solve/one_channel.h"
 #include "solve/small_problem.h"
 
 namespace pbnbrdf {
@@ -197,6 +201,58 @@ TEST(FitBrdf, SecondOrderSolversRefuseWhatIsNoSumOfSquares) {
   EXPECT_NE(error(Solver::kLbfgs, JacobianMethod::kAutodiff), "");
   EXPECT_EQ(error(Solver::kLbfgs, JacobianMethod::kCondensed), "");
   EXPECT_EQ(error(Solver::kAdam, JacobianMethod::kCondensed), "");
+}
+
+TEST(FitBrdf, OneChannelIsFittedByOneOutputWithEverySolver) {
+  const auto material = MakeBuiltin("rough-iron");
+  const ScatteredBrdf measured = MeasuredInOneChannel(*material, 3000);
+  FitProblem problem = SmallProblem();
+  problem.channels = measured.NumChannels();
+  problem.samples = 3000;
+  for (Solver solver : {Solver::kTinyLm, Solver::kLm, Solver::kLbfgs, Solver::kAdam}) {
+    FitOptions options;
+    options.solver = solver;
+    options.max_iterations = solver == Solver::kAdam ? 60 : 100;
+    options.adam.learning_rate = 5e-3;
+    options.adam.batch = 50;
+    const Fit fit = FitBrdf(measured, problem, options);
+    EXPECT_EQ(fit.network.NumChannels(), 1);
+    EXPECT_EQ(fit.network.weights().size(), 7u * 6 + 7);
+    const HeldOutErrors errors = MeasureErrors(measured, fit.network, 1000, 1);
+    EXPECT_LT(errors.mean_abs_log_error, 0.02) << NameOf(kSolvers, solver);
+    EXPECT_EQ(errors.samples, measured.Measurements().size() / 8);
+  }
+}
+
+TEST(FitBrdf, ChannelsThatDontSuitAreNamed) {
+  FitProblem problem = SmallProblem();
+  problem.channels = 1;
+  EXPECT_THAT(ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, {}); }),
+              HasSubstr("channels: the material has 3, the network's 1 would be a guess"));
+  problem.chromaticity_weight = 0.1;
+  EXPECT_THAT(ErrorOf([&] { problem.Validate(); }),
+              HasSubstr("terms: chromaticity is of no use to a single channel"));
+}
+
+// What is measured at a few theta_i only leaves the rest of the hemisphere open.
+TEST(FitBrdf, GapsBetweenMeasurementsStayTame) {
+  const auto material = MakeBuiltin("rough-iron");
+  ScatteredData data;
+  for (double theta_i : {0.2, 1.0}) {
+    for (const DirectionPair& pair : RandomPairs(500, /*seed=*/9)) {
+      const DirectionPair turned = {FromSpherical(theta_i, 0.0), pair.wo};
+      Rgb value;
+      material->Evaluate({&turned, 1}, {&value, 1});
+      data.samples.push_back({turned, value});
+    }
+  }
+  FitProblem problem = SmallProblem();
+  problem.samples = 4000;
+  problem.hidden = {12, 12};
+  const ScatteredBrdf measured(data);
+  const Fit fit = FitBrdf(measured, problem, {});
+  EXPECT_LT(MeasureErrors(measured, fit.network, 1000, 1).mean_abs_log_error, 0.01);
+  EXPECT_LT(DirectionalAlbedo(fit.network, FromSpherical(0.5, 0.0))[0], 2.0);
 }
 
 TEST(FitBrdf, GrowingSamplesEndNearTheErrorOfAllAtOnce) {

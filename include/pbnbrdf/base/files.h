@@ -14,6 +14,9 @@ std::uintmax_t FileSize(const std::string& path);
 // The file's bytes. Throws Error if it can't be read or is larger than `limit` bytes.
 std::string ReadFile(const std::string& path, std::uintmax_t limit);
 
+// The first `most` bytes, fewer if the file is shorter. Throws Error if it can't be read.
+std::string ReadStart(const std::string& path, std::size_t most);
+
 // Writes to a temporary file in the same folder and renames that to `path`, so that `path` holds
 // either its old content or all of the new; a link, device or pipe stays one. "-" is standard output.
 // Throws Error; the temporary file is removed.

@@ -4,10 +4,16 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pbnbrdf/brdf/direction.h"
 
 namespace pbnbrdf {
+
+struct BrdfSample {
+  DirectionPair pair;
+  Rgb value;  // f in 1/sr, >= 0
+};
 
 // A bidirectional reflectance distribution function f(wi, wo): linear RGB in 1/sr, finite, not
 // multiplied by a cosine. Batches are the unit of work. All members may be called from several
@@ -30,6 +36,13 @@ class Brdf {
 
   // Whether f stays the same when wi and wo turn together about the normal.
   virtual bool IsIsotropic() const { return true; }
+
+  // The measurements themselves, all of them above the horizon, where a source is a list of them
+  // instead of a model or a grid: what is fitted, while f in between is interpolated. Else empty.
+  virtual std::vector<BrdfSample> Measurements() const { return {}; }
+
+  // 3, or 1 where the three channels are one and the same.
+  virtual int NumChannels() const { return 3; }
 
   // One line: the model and its main parameters.
   virtual std::string Description() const = 0;

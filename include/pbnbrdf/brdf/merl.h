@@ -8,6 +8,9 @@
 //
 // and phi_d and phi_d + pi are the same by reciprocity. A bin with a negative channel is invalid.
 //
+// Other numbers of bins, when the header says so, divide the same ranges. 360 of phi_d are the whole
+// circle in steps of a degree: such a table says what f is at phi_d + pi, too.
+//
 // [1] W. Matusik, H. Pfister, M. Brand, L. McMillan. A Data-Driven Reflectance Model. ACM TOG 22,
 //     2003.
 #pragma once
@@ -19,15 +22,24 @@
 
 namespace pbnbrdf {
 
+// The numbers of bins of a table, each >= 1.
+struct MerlGrid {
+  int theta_h = 90, theta_d = 90, phi_d = 180;
+
+  std::size_t bins() const { return std::size_t(theta_h) * theta_d * phi_d; }
+  bool WholeCircle() const { return phi_d == 360; }  // else phi_d < pi
+};
+
 class MerlBrdf final : public Brdf {
  public:
+  // Of the database's own tables, and those of Tabulate.
   static constexpr int kThetaH = 90, kThetaD = 90, kPhiD = 180;
   static constexpr std::size_t kBins = std::size_t{kThetaH} * kThetaD * kPhiD;
 
-  // theta_h of a row, 0 to kThetaH, radians.
+  // theta_h of a row of such a table, 0 to kThetaH, radians.
   static double RowAngle(int row);
 
-  // Throws Error if the file is missing, has other dimensions or another length, or holds values
+  // Throws Error if the file is missing, hasn't the length that its header asks for, or holds values
   // that aren't finite or no valid bin.
   static MerlBrdf Read(const std::string& path);
 
@@ -50,17 +62,21 @@ class MerlBrdf final : public Brdf {
 
   std::string Description() const override;
 
+  const MerlGrid& grid() const { return grid_; }
   std::size_t valid_bins() const { return valid_bins_; }
 
   // The stored value of a bin: f / scale, negative if invalid. channel 0, 1, 2.
-  double Stored(int channel, std::size_t bin) const { return planes_[channel * kBins + bin]; }
+  double Stored(int channel, std::size_t bin) const {
+    return planes_[channel * grid_.bins() + bin];
+  }
 
  private:
-  explicit MerlBrdf(std::vector<double> planes);
+  MerlBrdf(const MerlGrid& grid, std::vector<double> planes);
 
   bool IsValid(std::size_t bin) const;
   Rgb Interpolate(const DirectionPair& pair) const;
 
+  MerlGrid grid_;
   std::vector<double> planes_;  // [channel][theta_h][theta_d][phi_d], as stored in the file
   std::size_t valid_bins_ = 0;
 };

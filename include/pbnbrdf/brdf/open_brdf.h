@@ -8,8 +8,10 @@
 
 namespace pbnbrdf {
 
-// "FILE.binary" (MERL), "sgd:PARAMETERS.csv#MATERIAL", "builtin:NAME", an analytic model with its
-// parameters, "MODEL:NAME=VALUE,..." (analytic.h), or the file of one, "FILE.json". Throws Error.
+// "sgd:PARAMETERS.csv#MATERIAL", "builtin:NAME", an analytic model with its parameters,
+// "MODEL:NAME=VALUE,..." (analytic.h), or a file: FILE.json (of an analytic model), FILE.bsdf (rgl.h),
+// FILE.alta or FILE.dat (ALTA) or FILE.csv (scattered_files.h), FILE.binary (merl.h). Files of other
+// names are told by what they begin with, and are MERL tables if nothing else. Throws Error.
 std::unique_ptr<Brdf> OpenMeasuredBrdf(const std::string& source);
 
 }  // namespace pbnbrdf

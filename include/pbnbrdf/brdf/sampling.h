@@ -23,31 +23,42 @@ inline constexpr NameTable<Sampling, 2> kSamplings = {
 // The two sets draw theta_d from disjoint grids: they have no sample in common, whatever the seeds.
 enum class SampleSet { kTraining, kHeldOut };
 
-struct BrdfSample {
-  DirectionPair pair;
-  Rgb value;  // f in 1/sr, >= 0
-};
-
 // Samples at which a Brdf is known, one after the other: the same arguments give the same ones,
 // however many at a time.
+//
+// Of a Brdf that is a list of measurements these are the samples, in a random order. One in 8 is held
+// out, whatever the seed, together with those at the same place (scattered.h): repeated, reciprocal
+// and, if isotropic, mirrored ones. To three training samples comes a fourth at angles drawn as those
+// of any other Brdf, with the value that the training samples interpolate to there: what is measured
+// along a few lines only leaves wide gaps, in which networks that nothing holds grow by orders of
+// magnitude. Where there are fewer than 3000, all are repeated until they aren't, so that gaps are
+// filled, too, without counting more than measurements.
 class SampleStream {
  public:
   // brdf must outlive this.
-  SampleStream(const Brdf& brdf, SampleSet set, Sampling sampling, std::uint64_t seed)
-      : brdf_(brdf), set_(set), sampling_(sampling), random_(seed) {}
+  SampleStream(const Brdf& brdf, SampleSet set, Sampling sampling, std::uint64_t seed);
 
-  // Appends the next `count` samples. Throws Error if next to no angles are known (fewer than 1 in
-  // 10,000).
+  // Appends the next `count` samples, fewer if there are no more. Throws Error if next to no angles
+  // are known (fewer than 1 in 10,000).
   void Draw(std::size_t count, std::vector<BrdfSample>* samples);
 
+  // How many samples there are in all; the largest number there is where they never end.
+  std::size_t most() const;
+
  private:
+  void AddInterpolated();
+  DirectionPair DrawPair();
+  void DrawAngles(std::size_t count, std::vector<BrdfSample>* samples);
+
   const Brdf& brdf_;
   SampleSet set_;
   Sampling sampling_;
   std::mt19937_64 random_;
+  std::vector<BrdfSample> measured_;  // of the set, and interpolated ones, shuffled
+  std::size_t next_ = 0;              // of them
 };
 
-// The first `count` samples of a SampleStream.
+// The first `count` samples of a SampleStream, or all if there are fewer.
 std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
                                     std::size_t count, std::uint64_t seed);
 

@@ -19,11 +19,15 @@ class ScaledBrdf final : public Brdf {
                          std::span<Rgb> values) const override;
   bool IsKnown(const DirectionPair& pair) const override { return source_->IsKnown(pair); }
   bool IsIsotropic() const override { return source_->IsIsotropic(); }
+  std::vector<BrdfSample> Measurements() const override;
+  int NumChannels() const override { return source_->NumChannels(); }
   std::string Description() const override;
 
   double factor() const { return factor_; }
 
  private:
+  void Scale(Rgb* value) const;
+
   std::unique_ptr<Brdf> source_;
   double factor_;
 };

@@ -27,12 +27,13 @@ class BatchedMlp {
   // weights: shape().num_weights(); input: by feature, in(0) x kBatch, must outlive Backward.
   void Forward(const T* weights, const T* input);
 
-  // z, before the output unit. By feature, kChannels x kBatch.
+  // z, before the output unit. By feature, kChannels x kBatch; of a network with one output this is
+  // kChannels times the same.
   const T* output() const { return activations_.back().data(); }
   T* output() { return activations_.back().data(); }
 
   // To be filled before Backward. By feature, kChannels x kBatch.
-  T* output_gradient(int row) { return deltas_.back().data() + row * kChannels * kBatch; }
+  T* output_gradient(int row) { return output_gradients().data() + row * kChannels * kBatch; }
 
   // After Forward with the same weights.
   void Backward(const T* weights);
@@ -53,13 +54,21 @@ class BatchedMlp {
  private:
   static constexpr int kChannels = NetworkShape::kChannels;
 
+  bool HasOneOutput() const { return shape_.num_outputs() == 1; }
+  AlignedVector<T>& output_gradients() {
+    return HasOneOutput() ? channel_gradients_ : deltas_.back();
+  }
+  void RepeatOutput();
+  void SumChannelGradients();
   void BackwardRow(const T* weights, int row);
+
   NetworkShape shape_;
   int rows_;
   const T* input_ = nullptr;
   AlignedVector<T> ones_;                      // the input of the biases, kBatch
   std::vector<AlignedVector<T>> activations_;  // [layer]: its output, by feature
   std::vector<AlignedVector<T>> deltas_;       // [layer]: row after row, by feature
+  AlignedVector<T> channel_gradients_;         // of one output only: those of all channels
   std::vector<AlignedVector<T>> inputs_by_sample_;
 };
 

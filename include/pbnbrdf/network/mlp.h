@@ -19,7 +19,7 @@ T Activate(Activation activation, const T& x) {
 }
 
 // The last layer's values z, before the output unit. input: in(0) numbers; layers: a pointer to
-// each layer's block (network_shape.h); z: kChannels numbers.
+// each layer's block (network_shape.h); z: kChannels numbers, equal if there is one output.
 template <typename T>
 void EvaluateMlp(const NetworkShape& shape, const double* input, T const* const* layers, T* z) {
   std::vector<T> from(input, input + shape.in(0)), to;
@@ -34,7 +34,8 @@ void EvaluateMlp(const NetworkShape& shape, const double* input, T const* const*
     }
     from.swap(to);
   }
-  std::copy(from.begin(), from.end(), z);
+  for (std::size_t c = 0; c < NetworkShape::kChannels; ++c)
+    z[c] = from[std::min(c, from.size() - 1)];
 }
 
 // The output unit: the reflectance while fitting, f^ = expm1(z) > -1, smooth in z. What is

@@ -3,6 +3,10 @@
 // Layer l maps sizes[l] values to sizes[l + 1]; its weights are the matrix [W | b], row-major,
 // shape out x (in + 1), bias last: one Ceres parameter block. All layers one after the other make
 // up the vector of weights: a 6-21-21-3 network has blocks of 147, 462 and 66, 675 numbers.
+//
+// A network of one output is for materials of one channel: wherever the kChannels outputs z of a
+// network are taken, its output stands for all of them, and gradients with respect to these are
+// summed. Its last block is a third of the other's; nothing else differs.
 #pragma once
 
 #include <string>
@@ -23,12 +27,13 @@ inline constexpr NameTable<Activation, 2> kActivations = {
 
 class NetworkShape {
  public:
-  static constexpr int kChannels = 3;
+  static constexpr int kChannels = 3;  // that a Brdf has, whatever the outputs
   static constexpr int kLargestLayer = 256, kMostLayers = 8;
 
   // hidden: sizes of the hidden layers, e.g. {21, 21}. Throws Error unless there are 1 to
-  // kMostLayers - 1 of them, each of 1 to kLargestLayer units.
-  NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation);
+  // kMostLayers - 1 of them, each of 1 to kLargestLayer units, and 1 or kChannels outputs.
+  NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation,
+               int outputs = kChannels);
 
   Encoding encoding() const { return encoding_; }
   Activation activation() const { return activation_; }
@@ -39,6 +44,7 @@ class NetworkShape {
   int block_size(int layer) const { return out(layer) * (in(layer) + 1); }
   int offset(int layer) const { return offsets_[layer]; }  // of its block in the weights
   int num_weights() const { return offsets_.back(); }
+  int num_outputs() const { return sizes_.back(); }
   std::vector<int> hidden() const { return {sizes_.begin() + 1, sizes_.end() - 1}; }
 
   // Pointers to each layer's block within `weights`, num_weights() numbers.

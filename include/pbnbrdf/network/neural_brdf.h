@@ -10,7 +10,7 @@
 
 namespace pbnbrdf {
 
-// f = max(0, expm1(z)), z the network's output at the encoded pair.
+// f = max(0, expm1(z)), z the network's output at the encoded pair, or its only one three times.
 class NeuralBrdf final : public Brdf {
  public:
   // What a file says about a fit beyond its network: "terms", "seed", "mean_abs_log_error", ...
@@ -33,6 +33,7 @@ class NeuralBrdf final : public Brdf {
   void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                          std::span<Rgb> values) const override;
   bool IsIsotropic() const override { return pbnbrdf::IsIsotropic(shape_.encoding()); }
+  int NumChannels() const override { return shape_.num_outputs(); }
   std::string Description() const override;
 
   const NetworkShape& shape() const { return shape_; }

@@ -63,6 +63,7 @@ struct FitProblem {
   std::vector<int> hidden = {21, 21};
   Activation activation = Activation::kTanh;
   Initialization initialization = Initialization::kGlorot;
+  int channels = 3;  // or 1, of materials that have one only: its output is then r = g = b
 
   // The terms' weights, >= 0; 0: the term is absent. At least one > 0.
   double log_weight = 1.0;
@@ -90,7 +91,7 @@ struct FitProblem {
 
   Precision precision = Precision::kSingle;
 
-  NetworkShape Shape() const { return NetworkShape(encoding, hidden, activation); }
+  NetworkShape Shape() const { return NetworkShape(encoding, hidden, activation, channels); }
 
   // Throws Error, naming the field, its value and what it must be.
   void Validate() const;

@@ -1,0 +1,17 @@
+// make_scattered.h: what readers of scattered measurements share once they have them.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "pbnbrdf/brdf/scattered.h"
+
+namespace pbnbrdf {
+
+// Whether all wi, but those at the normal, have the same azimuth: phi_h is then known of no pair.
+bool HaveOneIncidentAzimuth(std::span<const BrdfSample> samples);
+
+// Its Error names the file.
+ScatteredBrdf MakeScattered(const std::string& path, ScatteredData data);
+
+}  // namespace pbnbrdf
