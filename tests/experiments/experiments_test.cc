@@ -248,7 +248,7 @@ TEST(Models, WritesEveryFitAndTheTables) {
   const TemporaryFolder folder;
   std::vector<std::string> flags = kTinyModels;
   flags.insert(flags.end(), {"--models=lambert,phong,ggx", "--lobes=1,2",
-                             "--materials=metal=builtin:satin-gold", "builtin:rolled-brass"});
+                             "--materials=metal=builtin:satin-gold", "builtin:blue-plastic"});
   const ProgramResult run = RunIn(folder, "models", flags);
   ASSERT_EQ(run.status, 0);
   const std::string csv = Read(folder / "results/models.csv");
@@ -257,7 +257,7 @@ TEST(Models, WritesEveryFitAndTheTables) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 6);
   EXPECT_THAT(csv, HasSubstr("satin-gold,builtin,\"ggx, 2 lobes\",19,"));
   EXPECT_THAT(csv, HasSubstr("satin-gold,builtin,lambert,3,"));
-  for (const char* text : {"Failed fits: 0.", "## By material", "| satin-gold ", "| rolled-brass ",
+  for (const char* text : {"Failed fits: 0.", "## By material", "| satin-gold ", "| blue-plastic ",
                            "## By method, builtin", "| phong, 1 lobe ", "| network 3-3 "}) {
     EXPECT_THAT(run.output, HasSubstr(text));
   }
