@@ -279,23 +279,26 @@ class Ablation {
     }
   }
 
-  // record: names the fits. The last one is done first: where its energy term had nothing to do, its
-  // fit is also that of the set-up without the term.
-  void RunSetUps(const std::vector<SetUp>& set_ups, const Brdf& material, AblationRecord record,
+  // record: names the fits. The last one is done first if it has an energy term: where that had
+  // nothing to do, its fit is also that of the set-up before it, the same without the term.
+  void RunSetUps(std::vector<SetUp> set_ups, const Brdf& material, AblationRecord record,
                  std::size_t index) {
+    const bool is_reversed = set_ups.back().problem.energy_weight > 0.0;
+    if (is_reversed) std::reverse(set_ups.begin(), set_ups.end());
     std::vector<AblationRecord> fits;
     bool is_known = false;
-    for (auto set_up = set_ups.rbegin(); set_up != set_ups.rend(); ++set_up) {
-      record.set_up = set_up->name;
+    for (const SetUp& set_up : set_ups) {
+      record.set_up = set_up.name;
       if (!is_known) {
-        const std::optional<EnergySummary> energy = RunFit(material, set_up->problem, &record);
+        const std::optional<EnergySummary> energy = RunFit(material, set_up.problem, &record);
         if (!energy) continue;
         const bool has_acted = energy->rounds > 0 || energy->correction > 0.0;
-        is_known = set_up->problem.energy_weight > 0.0 && !has_acted;
+        is_known = set_up.problem.energy_weight > 0.0 && !has_acted;
       }
       fits.push_back(record);
     }
-    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) Keep(*fit, index);
+    if (is_reversed) std::reverse(fits.begin(), fits.end());
+    for (const AblationRecord& fit : fits) Keep(fit, index);
   }
 
   // record: names the fit and takes its measures. None if it failed.
