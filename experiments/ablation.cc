@@ -1,15 +1,14 @@
 // ablation.cc: what each of the paper's terms does, on many materials.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "ablation_tables.h"
 #include "comparison.h"
 #include "default_materials.h"
 #include "experiment.h"
+#include "fit_log.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/text.h"
 #include "pbnbrdf/brdf/scaled.h"
@@ -186,11 +185,8 @@ class Ablation {
  public:
   explicit Ablation(const Plan& plan)
       : plan_(plan),
-        csv_path_(OutputPath("ablation.csv")),
-        csv_(csv_path_),
-        records_(plan.materials.size()) {
-    csv_ << CsvLine(AblationCsvHeader()) << std::flush;
-  }
+        log_(OutputPath("ablation.csv"), AblationCsvHeader()),
+        records_(plan.materials.size()) {}
 
   // Of the plan's materials.
   void RunMaterial(std::size_t index) {
@@ -199,7 +195,7 @@ class Ablation {
       try {
         for (const Variant& variant : Variants(table, material)) RunTable(table, variant, index);
       } catch (const Error& error) {
-        NoteFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
+        log_.AddFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
       }
     }
   }
@@ -229,23 +225,26 @@ class Ablation {
     }
   }
 
-  // record: names the fits. The last one is done first: where its energy term had nothing to do, its
-  // fit is also that of the set-up without the term.
-  void RunSetUps(const std::vector<SetUp>& set_ups, const Brdf& material, AblationRecord record,
+  // record: names the fits. The last one is done first if it has an energy term: where that had
+  // nothing to do, its fit is also that of the set-up before it, the same without the term.
+  void RunSetUps(std::vector<SetUp> set_ups, const Brdf& material, AblationRecord record,
                  std::size_t index) {
+    const bool is_reversed = set_ups.back().problem.energy_weight > 0.0;
+    if (is_reversed) std::reverse(set_ups.begin(), set_ups.end());
     std::vector<AblationRecord> fits;
     bool is_known = false;
-    for (auto set_up = set_ups.rbegin(); set_up != set_ups.rend(); ++set_up) {
-      record.set_up = set_up->name;
+    for (const SetUp& set_up : set_ups) {
+      record.set_up = set_up.name;
       if (!is_known) {
-        const std::optional<EnergySummary> energy = RunFit(material, set_up->problem, &record);
+        const std::optional<EnergySummary> energy = RunFit(material, set_up.problem, &record);
         if (!energy) continue;
         const bool has_acted = energy->rounds > 0 || energy->correction > 0.0;
-        is_known = set_up->problem.energy_weight > 0.0 && !has_acted;
+        is_known = set_up.problem.energy_weight > 0.0 && !has_acted;
       }
       fits.push_back(record);
     }
-    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) Keep(*fit, index);
+    if (is_reversed) std::reverse(fits.begin(), fits.end());
+    for (const AblationRecord& fit : fits) Keep(fit, index);
   }
 
   // record: names the fit and takes its measures. None if it failed.
@@ -262,11 +261,11 @@ class Ablation {
       Measure(material, fit, record);
       energy = fit.summary.energy;
     } catch (const Error& error) {
-      NoteFailure(what + error.what());
+      log_.AddFailure(what + error.what());
       return std::nullopt;
     }
     if (!IsFinite(*record)) {
-      NoteFailure(what + "a measure isn't finite");
+      log_.AddFailure(what + "a measure isn't finite");
       return std::nullopt;
     }
     std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record->errors.mean_abs_log_error,
@@ -283,42 +282,27 @@ class Ablation {
     record->energy = MeasureEnergy(fit.network);
   }
 
-  // At once, so that a long run that is stopped has left its rows.
   void Keep(const AblationRecord& record, std::size_t index) {
-    const std::scoped_lock lock(mutex_);
-    csv_ << CsvLine(AblationCsvRow(record));
-    if (!csv_.flush()) Fail(csv_path_, ": can't be written");
+    log_.AddRow(AblationCsvRow(record));
     records_[index].push_back(record);
-  }
-
-  void NoteFailure(const std::string& failure) {
-    const std::scoped_lock lock(mutex_);
-    failures_.push_back(failure);
-    std::fprintf(stderr, "%s\n", failure.c_str());
   }
 
   // How the numbers came about, and what failed.
   std::string Preface() const {
-    std::string text = StrCat(
+    return StrCat(
         plan_.materials.size(), " materials, seeds ", FLAGS_seeds, ", at most ",
         FLAGS_max_iterations, " iterations and ", FLAGS_max_seconds,
         " s a fit; base of the energy and chromaticity tables: ", FLAGS_base,
         ". Medians are over materials, of each the median of its seeds; worst: of all fits. For "
         "energy, materials that aren't built in are scaled to a largest directional albedo of ",
         FLAGS_scale_to_albedo, ", and built-in ones as they are if theirs is at least ",
-        kLowDissipation,
-        "; for all terms, they come both as they are and scaled. Failed fits: ", failures_.size(),
-        ".\n\n");
-    for (const std::string& failure : failures_) text += "- " + failure + "\n";
-    return text + (failures_.empty() ? "" : "\n");
+        kLowDissipation, "; for all terms, they come both as they are and scaled. ",
+        log_.FailuresMarkdown());
   }
 
   const Plan& plan_;
-  std::string csv_path_;
-  std::ofstream csv_;
-  std::mutex mutex_;
+  FitLog log_;
   std::vector<std::vector<AblationRecord>> records_;  // of each material
-  std::vector<std::string> failures_;
 };
 
 void Run(const std::vector<std::string>& arguments) {

@@ -1,11 +1,10 @@
 // collection.cc: every material of a collection, fitted with one set-up.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <mutex>
 
 #include "comparison.h"
 #include "experiment.h"
+#include "fit_log.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/text.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
@@ -143,11 +142,8 @@ class Collection {
  public:
   explicit Collection(const Plan& plan)
       : plan_(plan),
-        csv_path_(OutputPath("collection.csv")),
-        csv_(csv_path_),
-        records_(plan.materials.size()) {
-    csv_ << CsvLine(CsvHeader()) << std::flush;
-  }
+        log_(OutputPath("collection.csv"), CsvHeader()),
+        records_(plan.materials.size()) {}
 
   // Of the plan's materials.
   void RunMaterial(std::size_t index) {
@@ -156,46 +152,33 @@ class Collection {
       try {
         Keep(FitOne(plan_, material, seed), index);
       } catch (const Error& error) {
-        NoteFailure(StrCat(material.name, ", seed ", seed, ": ", error.what()));
+        log_.AddFailure(StrCat(material.name, ", seed ", seed, ": ", error.what()));
       }
     }
   }
 
   void Report() const {
-    std::string text =
-        StrCat(plan_.materials.size(), " materials, seeds ", FLAGS_seeds, ", at most ",
-               FLAGS_max_iterations, " iterations and ", FLAGS_max_seconds,
-               " s a fit. Failed fits: ", failures_.size(), ".\n\n");
-    for (const std::string& failure : failures_) text += "- " + failure + "\n";
     std::vector<Record> all;
     for (const auto& of_material : records_) {
       all.insert(all.end(), of_material.begin(), of_material.end());
     }
-    WriteReport("collection", text + (failures_.empty() ? "" : "\n") + Markdown(std::move(all)));
+    WriteReport("collection",
+                StrCat(plan_.materials.size(), " materials, seeds ", FLAGS_seeds, ", at most ",
+                       FLAGS_max_iterations, " iterations and ", FLAGS_max_seconds, " s a fit. ",
+                       log_.FailuresMarkdown(), Markdown(std::move(all))));
   }
 
  private:
   void Keep(const Record& record, std::size_t index) {
-    const std::scoped_lock lock(mutex_);
-    csv_ << CsvLine(CsvRow(record));
-    if (!csv_.flush()) Fail(csv_path_, ": can't be written");
+    log_.AddRow(CsvRow(record));
     records_[index].push_back(record);
     std::fprintf(stderr, "%s, seed %zu: %.3g in %.3g s\n", record.material.c_str(), record.seed,
                  record.mean_abs_log_error, record.seconds);
   }
 
-  void NoteFailure(const std::string& failure) {
-    const std::scoped_lock lock(mutex_);
-    failures_.push_back(failure);
-    std::fprintf(stderr, "%s\n", failure.c_str());
-  }
-
   const Plan& plan_;
-  std::string csv_path_;
-  std::ofstream csv_;
-  std::mutex mutex_;
+  FitLog log_;
   std::vector<std::vector<Record>> records_;  // of each material
-  std::vector<std::string> failures_;
 };
 
 void Run(const std::vector<std::string>& arguments) {

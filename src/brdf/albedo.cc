@@ -85,7 +85,7 @@ class RefinedAlbedo {
     int n_theta = grid.n_theta, n_phi = grid.n_phi;
     for (int level = 0; level < grid.refinements; ++level) {
       levels_.push_back(AlbedoQuadrature::OnMerlRows(n_theta, n_phi));
-      n_theta = std::min(n_theta + (n_theta + 1) / 2, kMostTheta);
+      n_theta += (n_theta + 1) / 2;
       n_phi += n_phi / 2;
     }
   }
@@ -105,6 +105,13 @@ class RefinedAlbedo {
     Refine(wi, bound, levels_.size(), estimate);
   }
 
+  // Raises the bound to what an albedo is at least.
+  static void Raise(const Estimate& estimate, Rgb* bound) {
+    for (int c = 0; c < 3; ++c) {
+      (*bound)[c] = std::max((*bound)[c], estimate.albedo[c] - kMargin * estimate.error);
+    }
+  }
+
   // Whether a channel may exceed the bound.
   static bool MayExceed(const Estimate& estimate, const Rgb& bound) {
     bool may = false;
@@ -113,8 +120,7 @@ class RefinedAlbedo {
   }
 
  private:
-  static constexpr int kMostTheta = 6;  // exact enough; what needs more are ridges over phi_h
-  static constexpr double kCoarseError = 2e-3;  // relative
+  static constexpr double kCoarseError = 0.01;  // relative, seen at networks with ripples
   static constexpr double kMargin = 4.0;
   static constexpr std::size_t kFirstLevels = 2;
 
@@ -167,28 +173,11 @@ std::vector<IncidentAlbedo> GridDirections(const AlbedoGrid& grid, int azimuths)
   return directions;
 }
 
-// Of Estimates or IncidentAlbedos.
-template <typename Albedos>
-Rgb LargestByChannel(const Albedos& albedos) {
-  Rgb largest = {};
-  for (const auto& at : albedos) {
-    for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], at.albedo[c]);
-  }
-  return largest;
-}
-
-// Below it, albedos are of no interest.
-template <typename Albedos>
-Rgb RefinementBound(const Albedos& albedos, const AlbedoGrid& grid) {
-  Rgb bound = LargestByChannel(albedos);
-  for (double& channel : bound) channel = std::max(channel, grid.refine_above);
-  return bound;
-}
-
 // The directions of local maxima, albedos not yet known. profile: sorted by phi_i, then theta_i.
 std::vector<IncidentAlbedo> MaximaBetween(const std::vector<IncidentAlbedo>& profile,
                                           const AlbedoGrid& grid) {
-  const Rgb bound = RefinementBound(profile, grid);
+  Rgb bound = LargestAlbedos(profile);
+  for (double& channel : bound) channel = std::max(channel, grid.refine_above);
   std::vector<IncidentAlbedo> maxima;
   for (auto row = profile.begin(); row != profile.end();) {
     const double phi_i = row->phi_i;
@@ -210,7 +199,9 @@ void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid, std::span<Incide
   };
   tbb::parallel_for(std::size_t{0}, profile.size(),
                     [&](std::size_t n) { estimates[n] = refined.At(wi(n)); });
-  const Rgb bound = RefinementBound(estimates, grid);
+  // Below these, albedos are of no interest.
+  Rgb bound = {grid.refine_above, grid.refine_above, grid.refine_above};
+  for (const Estimate& estimate : estimates) RefinedAlbedo::Raise(estimate, &bound);
   tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
     refined.Refine(wi(n), bound, &estimates[n]);
     profile[n].albedo = estimates[n].albedo;
@@ -324,6 +315,12 @@ std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& gr
   return profile;
 }
 
-Rgb LargestAlbedos(const std::vector<IncidentAlbedo>& profile) { return LargestByChannel(profile); }
+Rgb LargestAlbedos(const std::vector<IncidentAlbedo>& profile) {
+  Rgb largest = {};
+  for (const IncidentAlbedo& at : profile) {
+    for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], at.albedo[c]);
+  }
+  return largest;
+}
 
 }  // namespace pbnbrdf
