@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 
@@ -76,12 +78,15 @@ struct Estimate {
   Rgb albedo;
   double error;           // about
   std::size_t level = 0;  // of refinement
+  bool is_exact = true;   // else in single precision
 };
 
-// Albedos by quadratures that are refined as AlbedoGrid says.
+// Albedos by quadratures that are refined as AlbedoGrid says: in single precision, where the Brdf
+// has it, for as long as this is good enough.
 class RefinedAlbedo {
  public:
-  RefinedAlbedo(const Brdf& brdf, const AlbedoGrid& grid) : brdf_(brdf), grid_(grid) {
+  RefinedAlbedo(const Brdf& brdf, const AlbedoGrid& grid)
+      : brdf_(brdf), single_(brdf.SinglePrecision()), grid_(grid) {
     int n_theta = grid.n_theta, n_phi = grid.n_phi;
     for (int level = 0; level < grid.refinements; ++level) {
       levels_.push_back(AlbedoQuadrature::OnMerlRows(n_theta, n_phi));
@@ -90,51 +95,64 @@ class RefinedAlbedo {
     }
   }
 
-  // With the first few refinements, if it needs them.
+  // By the first quadrature, which also tells whether single precision is good enough here.
   Estimate At(const Vec3& wi) const {
-    Estimate estimate;
-    estimate.albedo = DirectionalAlbedo(brdf_, wi, coarse_);
-    estimate.error = kCoarseError * Largest(estimate.albedo);
-    const Rgb bound = {grid_.refine_above, grid_.refine_above, grid_.refine_above};
-    Refine(wi, bound, std::min(levels_.size(), kFirstLevels), &estimate);
-    return estimate;
+    const Rgb albedo = DirectionalAlbedo(brdf_, wi, coarse_);
+    const bool needs_double =
+        !single_ ||
+        !(LargestDifference(DirectionalAlbedo(*single_, wi, coarse_), albedo) <= kRounding);
+    return {.albedo = albedo, .error = kCoarseError * Largest(albedo), .is_exact = needs_double};
   }
 
-  // With more of them, where a channel may exceed the bound.
-  void Refine(const Vec3& wi, const Rgb& bound, Estimate* estimate) const {
-    Refine(wi, bound, levels_.size(), estimate);
+  // One step, to the next quadrature or from single to double precision; false if the estimate is
+  // good already.
+  bool Refine(const Vec3& wi, const Rgb& bound, Estimate* estimate) const {
+    if (IsAccurate(*estimate) || !MayExceed(*estimate, bound)) return false;
+    if (!estimate->is_exact && estimate->error <= kRounding) {
+      estimate->albedo = DirectionalAlbedo(brdf_, wi, levels_[estimate->level - 1]);
+      estimate->is_exact = true;
+      return true;
+    }
+    if (estimate->level == levels_.size()) return false;
+    const Brdf& brdf = estimate->is_exact ? brdf_ : *single_;
+    const Rgb finer = DirectionalAlbedo(brdf, wi, levels_[estimate->level++]);
+    estimate->error = LargestDifference(finer, estimate->albedo);
+    estimate->albedo = finer;
+    return true;
   }
 
   // Raises the bound to what an albedo is at least.
   static void Raise(const Estimate& estimate, Rgb* bound) {
     for (int c = 0; c < 3; ++c) {
-      (*bound)[c] = std::max((*bound)[c], estimate.albedo[c] - kMargin * estimate.error);
+      (*bound)[c] = std::max((*bound)[c], estimate.albedo[c] - Margin(estimate));
     }
+  }
+
+ private:
+  static constexpr double kCoarseError = 0.01;  // relative, seen at networks with ripples
+  static constexpr double kRounding = 1e-5;     // of albedos in single precision, at most
+  static constexpr double kMargin = 4.0;
+
+  static double Error(const Estimate& estimate) {
+    return estimate.is_exact ? estimate.error : std::max(estimate.error, kRounding);
+  }
+
+  static double Margin(const Estimate& estimate) { return kMargin * Error(estimate); }
+
+  bool IsAccurate(const Estimate& estimate) const {
+    const double excess = Largest(estimate.albedo) - 1.0;
+    return Error(estimate) <= std::max(grid_.tolerance, grid_.excess_tolerance * excess);
   }
 
   // Whether a channel may exceed the bound.
   static bool MayExceed(const Estimate& estimate, const Rgb& bound) {
     bool may = false;
-    for (int c = 0; c < 3; ++c) may |= !(estimate.albedo[c] + kMargin * estimate.error < bound[c]);
+    for (int c = 0; c < 3; ++c) may |= !(estimate.albedo[c] + Margin(estimate) < bound[c]);
     return may;
   }
 
- private:
-  static constexpr double kCoarseError = 0.01;  // relative, seen at networks with ripples
-  static constexpr double kMargin = 4.0;
-  static constexpr std::size_t kFirstLevels = 2;
-
-  void Refine(const Vec3& wi, const Rgb& bound, std::size_t most, Estimate* estimate) const {
-    while (estimate->level < most && MayExceed(*estimate, bound)) {
-      const double excess = Largest(estimate->albedo) - 1.0;
-      if (estimate->error <= std::max(grid_.tolerance, grid_.excess_tolerance * excess)) return;
-      const Rgb finer = DirectionalAlbedo(brdf_, wi, levels_[estimate->level++]);
-      estimate->error = LargestDifference(finer, estimate->albedo);
-      estimate->albedo = finer;
-    }
-  }
-
   const Brdf& brdf_;
+  const std::unique_ptr<const Brdf> single_;  // or null
   const AlbedoGrid& grid_;
   AlbedoQuadrature coarse_ = AlbedoQuadrature(64, 32);
   std::vector<AlbedoQuadrature> levels_;
@@ -201,11 +219,14 @@ void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid, std::span<Incide
                     [&](std::size_t n) { estimates[n] = refined.At(wi(n)); });
   // Below these, albedos are of no interest.
   Rgb bound = {grid.refine_above, grid.refine_above, grid.refine_above};
-  for (const Estimate& estimate : estimates) RefinedAlbedo::Raise(estimate, &bound);
-  tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
-    refined.Refine(wi(n), bound, &estimates[n]);
-    profile[n].albedo = estimates[n].albedo;
-  });
+  for (std::atomic<bool> goes_on = true; goes_on;) {
+    goes_on = false;
+    for (const Estimate& estimate : estimates) RefinedAlbedo::Raise(estimate, &bound);
+    tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
+      if (refined.Refine(wi(n), bound, &estimates[n])) goes_on = true;
+    });
+  }
+  for (std::size_t n = 0; n < profile.size(); ++n) profile[n].albedo = estimates[n].albedo;
 }
 
 }  // namespace

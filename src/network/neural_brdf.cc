@@ -6,6 +6,7 @@
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/network/batched_mlp.h"
+#include "pbnbrdf/network/fast_neural_brdf.h"
 #include "pbnbrdf/network/nbrdf_files.h"
 #include "pbnbrdf/network/safetensors.h"
 
@@ -141,6 +142,10 @@ void NeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
       }
     }
   }
+}
+
+std::unique_ptr<Brdf> NeuralBrdf::SinglePrecision() const {
+  return std::make_unique<FastNeuralBrdf>(*this);
 }
 
 std::string NeuralBrdf::Description() const {

@@ -175,6 +175,32 @@ TEST(AlbedoProfile, FindsTheMaximumBetweenItsAngles) {
   EXPECT_NEAR(solid_angle, 2.0 * kPi, 1e-3);
 }
 
+// A Lambertian of an albedo just below 1 whose single precision is off by a factor.
+class RoundedBrdf final : public PointwiseBrdf {
+ public:
+  static constexpr double kAlbedo = 0.99999;
+
+  explicit RoundedBrdf(double factor) : rounded_(factor * kAlbedo) {}
+  std::unique_ptr<Brdf> SinglePrecision() const override {
+    return std::make_unique<LambertBrdf>(Rgb{0.5, rounded_, 0.5});
+  }
+  std::string Description() const override { return "rounded"; }
+
+ protected:
+  Rgb Value(const DirectionPair&) const override { return {0.5 / kPi, kAlbedo / kPi, 0.5 / kPi}; }
+
+ private:
+  double rounded_;
+};
+
+TEST(AlbedoProfile, SinglePrecisionDecidesNothingThatIsWithinItsRounding) {
+  const AlbedoGrid grid = {.angles = 10};
+  for (double factor : {0.0, 0.9, 1.0 - 5e-6, 1.0 + 5e-6, 1.2}) {
+    const Rgb largest = LargestAlbedos(AlbedoProfile(RoundedBrdf(factor), grid));
+    EXPECT_NEAR(largest[1], RoundedBrdf::kAlbedo, grid.tolerance) << factor;
+  }
+}
+
 TEST(AlbedoProfile, ReachesTheHorizon) {
   const auto profile = AlbedoProfile(LambertBrdf({0.5, 0.5, 0.5}), AlbedoGrid{});
   double steepest = 0.0;

@@ -64,8 +64,9 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n
 
 // Incident directions of a profile, and how well their albedos are known. Each is integrated with 64
 // x 32 nodes and then by AlbedoQuadrature::OnMerlRows with more and more, until two agree within a
-// tolerance, or it is below `refine_above` by a wide margin, four times their difference; after two
-// refinements, also if it is so below what the largest albedo of all is at least.
+// tolerance, or it is below `refine_above`, or what the largest albedo of all is at least, by a wide
+// margin, four times their difference. Where single precision (Brdf::SinglePrecision) agrees with
+// double within 1e-5, it is left what it can decide.
 struct AlbedoGrid {
   int angles = 300;  // theta_i: dense towards the last
   double last_angle = 0.5 * std::numbers::pi;

@@ -34,6 +34,7 @@ class NeuralBrdf final : public Brdf {
                          std::span<Rgb> values) const override;
   bool IsIsotropic() const override { return pbnbrdf::IsIsotropic(shape_.encoding()); }
   int NumChannels() const override { return shape_.num_outputs(); }
+  std::unique_ptr<Brdf> SinglePrecision() const override;  // a FastNeuralBrdf
   std::string Description() const override;
 
   const NetworkShape& shape() const { return shape_; }
