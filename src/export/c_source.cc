@@ -188,7 +188,8 @@ std::string Passes(const NetworkShape& shape) {
 
 }  // namespace
 
-std::string CSource(const NeuralBrdf& network, const std::string& name) {
+std::string CSource(const NeuralBrdf& fitted, const std::string& name) {
+  const NeuralBrdf network = fitted.WithRgbOutputs();
   CheckIdentifier(name);
   const NetworkShape& shape = network.shape();
   std::string text(kHead);

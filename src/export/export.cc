@@ -32,7 +32,7 @@ std::vector<FileContent> MitsubaFiles(const NeuralBrdf& network, const std::stri
   const std::string base = path.substr(0, path.size() - kPython.size());
   const std::string weights = base + "_weights.safetensors";
   const std::string name = std::filesystem::path(weights).filename();
-  return {{weights, network.Serialized()}, {path, MitsubaPlugin(name, FitSamplingLobe(network))}};
+  return {{weights, network.Serialized()}, {path, MitsubaPlugin(name, FitLobeProposal(network))}};
 }
 
 std::vector<FileContent> NbrdfFilesOf(const NeuralBrdf& network, const std::string& path,

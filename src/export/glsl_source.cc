@@ -216,7 +216,8 @@ void CheckGlslName(const std::string& name) {
 
 }  // namespace
 
-std::string GlslSource(const NeuralBrdf& network, const std::string& name) {
+std::string GlslSource(const NeuralBrdf& fitted, const std::string& name) {
+  const NeuralBrdf network = fitted.WithRgbOutputs();
   CheckGlslName(name);
   const NetworkShape& shape = network.shape();
   std::string text(kHead);

@@ -29,11 +29,16 @@ std::string BytesLiteral(const std::string& bytes) {
 
 }  // namespace
 
-std::string MitsubaPlugin(const std::string& network, const SamplingLobe& lobe) {
+std::string MitsubaPlugin(const std::string& network, const LobeProposal& proposal) {
   std::string text = kMitsubaPluginText;
+  const auto set_number = [&](const std::string& name, double value) {
+    ReplaceLine(&text, StrCat("\n", name, " = 0.5\n"),
+                StrCat("\n", name, " = ", FormatNumber(value), "\n"));
+  };
   ReplaceLine(&text, "b\"network.safetensors\"", BytesLiteral(network));
-  ReplaceLine(&text, "\nALPHA = 0.5\n", StrCat("\nALPHA = ", FormatNumber(lobe.alpha), "\n"));
-  ReplaceLine(&text, "\nGLOSSY = 0.5\n", StrCat("\nGLOSSY = ", FormatNumber(lobe.weight), "\n"));
+  set_number("ALPHA_U", proposal.alpha.x);
+  set_number("ALPHA_V", proposal.alpha.y);
+  set_number("LOBE_WEIGHT", proposal.lobe_weight);
   return text;
 }
 

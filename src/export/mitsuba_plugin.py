@@ -6,11 +6,13 @@
     bsdf = mitsuba.load_dict({"type": "pbnbrdf"})
 
 Parameters, all optional:
-    filename  a .safetensors file of pbnbrdf instead of the one beside this file
-    alpha     roughness of the GGX lobe that directions are drawn from, (0, 1]
-    glossy    how much of the draws it gets, 0 to 1; the rest is cosine distributed
+    filename          a .safetensors file of pbnbrdf instead of the one beside this file
+    alpha_u, alpha_v  roughness of the GGX lobe that directions are drawn from, along x and y, from
+                      0.0001 to 1
+    lobe_weight       how much of the draws it gets, 0 to 1; the rest is cosine distributed
 
-The two are set for the network beside this file; others make another's image noisier, not wrong.
+The last three are set for the network beside this file; others make another's image noisier, not
+wrong.
 Reflects on the side of the normal only: wrap it in "twosided" for both. RGB and monochromatic
 modes. eval() includes the cosine, as Mitsuba has it.
 LLVM variants need LLVM 16 or later: of an arc tangent 15 makes no machine code for AVX-512.
@@ -25,8 +27,9 @@ import drjit as dr
 import mitsuba as mi
 
 NETWORK = os.fsdecode(b"network.safetensors")
-ALPHA = 0.5
-GLOSSY = 0.5
+ALPHA_U = 0.5
+ALPHA_V = 0.5
+LOBE_WEIGHT = 0.5
 
 LARGEST_VALUE = 1e12  # 1/sr; narrower lobes than any measurement resolves
 
@@ -171,10 +174,13 @@ class NeuralBSDF(mi.BSDF):
         else:
             self.path = os.path.join(os.path.dirname(os.path.abspath(__file__)), NETWORK)
         self.network = Network(self.path)
-        self.alpha = float(props.get("alpha", ALPHA))
-        self.glossy = float(props.get("glossy", GLOSSY))
-        if not (0.0 < self.alpha <= 1.0 and 0.0 <= self.glossy <= 1.0):
-            raise ValueError("pbnbrdf: alpha must be in (0, 1], glossy in [0, 1]")
+        self.alpha_u = float(props.get("alpha_u", ALPHA_U))
+        self.alpha_v = float(props.get("alpha_v", ALPHA_V))
+        self.lobe_weight = float(props.get("lobe_weight", LOBE_WEIGHT))
+        if not all(1e-4 <= alpha <= 1.0 for alpha in (self.alpha_u, self.alpha_v)):
+            raise ValueError("pbnbrdf: alpha_u and alpha_v must be 0.0001 to 1")
+        if not 0.0 <= self.lobe_weight <= 1.0:
+            raise ValueError("pbnbrdf: lobe_weight must be 0 to 1")
         # The lobe serves to draw directions only; the material is one component.
         flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
         if self.network.encoding == "anisotropic":
@@ -183,7 +189,13 @@ class NeuralBSDF(mi.BSDF):
         self.m_flags = flags
 
     def lobe(self):
-        return mi.MicrofacetDistribution(mi.MicrofacetType.GGX, self.alpha, True)
+        return mi.MicrofacetDistribution(mi.MicrofacetType.GGX, self.alpha_u, self.alpha_v, True)
+
+    def lobe_pdf(self, wi, wo):
+        total = wi + wo
+        half = dr.normalize(dr.select(total.z > 0.0, total, mi.Vector3f(0.0, 0.0, 1.0)))
+        pdf = self.lobe().pdf(wi, half) / (4.0 * dr.dot(wi, half))
+        return dr.select(total.z > 0.0, pdf, 0.0)
 
     def is_active(self, ctx, si, wo, active):
         enabled = ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
@@ -200,10 +212,11 @@ class NeuralBSDF(mi.BSDF):
         return dr.select(self.is_active(ctx, si, wo, active), value, 0.0)
 
     def pdf(self, ctx, si, wo, active=True):
-        half = dr.normalize(si.wi + wo)
-        glossy = self.lobe().pdf(si.wi, half) / (4.0 * dr.dot(wo, half))
+        # Reflections that end below the horizon are turned up.
+        mirrored = mi.Vector3f(wo.x, wo.y, -wo.z)
+        lobe = self.lobe_pdf(si.wi, wo) + self.lobe_pdf(si.wi, mirrored)
         cosine = mi.warp.square_to_cosine_hemisphere_pdf(wo)
-        mixture = self.glossy * glossy + (1.0 - self.glossy) * cosine
+        mixture = self.lobe_weight * lobe + (1.0 - self.lobe_weight) * cosine
         return dr.select(self.is_active(ctx, si, wo, active), mixture, 0.0)
 
     def eval_pdf(self, ctx, si, wo, active=True):
@@ -211,7 +224,9 @@ class NeuralBSDF(mi.BSDF):
 
     def sample(self, ctx, si, sample1, sample2, active=True):
         normal, _ = self.lobe().sample(si.wi, sample2)
-        wo = dr.select(sample1 < self.glossy, mi.reflect(si.wi, normal),
+        reflected = mi.reflect(si.wi, normal)
+        reflected.z = dr.abs(reflected.z)
+        wo = dr.select(sample1 < self.lobe_weight, reflected,
                        mi.warp.square_to_cosine_hemisphere(sample2))
         value, pdf = self.eval_pdf(ctx, si, wo, active)
         bs = dr.zeros(mi.BSDFSample3f)
@@ -224,7 +239,8 @@ class NeuralBSDF(mi.BSDF):
         return bs, dr.select(drawn, value / dr.select(drawn, pdf, 1.0), 0.0)
 
     def to_string(self):
-        return f"NeuralBSDF[{self.path}, alpha={self.alpha}, glossy={self.glossy}]"
+        return (f"NeuralBSDF[{self.path}, alpha_u={self.alpha_u}, alpha_v={self.alpha_v}, "
+                f"lobe_weight={self.lobe_weight}]")
 
 
 mi.register_bsdf("pbnbrdf", lambda props: NeuralBSDF(props))

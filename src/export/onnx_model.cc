@@ -149,7 +149,8 @@ std::string AddOutput(Calculator* c, const std::string& z) {
 
 }  // namespace
 
-std::string OnnxModel(const NeuralBrdf& network) {
+std::string OnnxModel(const NeuralBrdf& fitted) {
+  const NeuralBrdf network = fitted.WithRgbOutputs();
   OnnxGraph graph;
   Calculator calculator(&graph);
   const Names inputs = Encode(&calculator, network.shape().encoding());

@@ -147,7 +147,7 @@ NeuralBrdf ReadNbrdf(const std::string& path) {
 
 std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path) {
   CheckIsNbrdf(network);
-  const std::vector<KerasDenseLayer> layers = DenseLayers(network);
+  const std::vector<KerasDenseLayer> layers = DenseLayers(network.WithRgbOutputs());
   if (IsKeras(path)) return {{path, KerasH5Bytes(layers)}};
   if (!path.ends_with(kFirstNpy)) {
     Fail(path, ": name the first layer's file, ...", kFirstNpy,

@@ -144,6 +144,17 @@ void NeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
   }
 }
 
+NeuralBrdf NeuralBrdf::WithRgbOutputs() const {
+  if (shape_.num_outputs() != 1) return *this;
+  std::vector<double> weights = weights_;
+  const auto last_row = weights_.begin() + shape_.offset(shape_.num_layers() - 1);
+  for (int c = 1; c < NetworkShape::kChannels; ++c) {
+    weights.insert(weights.end(), last_row, weights_.end());
+  }
+  return NeuralBrdf({shape_.encoding(), shape_.hidden(), shape_.activation()}, std::move(weights),
+                    metadata_);
+}
+
 std::unique_ptr<Brdf> NeuralBrdf::SinglePrecision() const {
   return std::make_unique<FastNeuralBrdf>(*this);
 }

@@ -23,17 +23,17 @@ inline FloatPair ToFloats(const Vec3& wi, const Vec3& wo) {
 
 // Weights of the size that fits have; values from 0 to some tens of 1/sr, not all of them positive.
 inline NeuralBrdf RandomNetwork(Encoding encoding, Activation activation, std::vector<int> hidden,
-                                unsigned seed) {
-  const NetworkShape shape(encoding, std::move(hidden), activation);
+                                unsigned seed, int outputs = NetworkShape::kChannels) {
+  const NetworkShape shape(encoding, std::move(hidden), activation, outputs);
   std::vector<double> weights = RandomWeights(shape, 0.6, seed);
-  for (int c = 0; c < NetworkShape::kChannels; ++c) {
+  for (int c = 0; c < outputs; ++c) {
     weights[weights.size() - 1 - c * (shape.in(shape.num_layers() - 1) + 1)] += 0.6;
   }
   return NeuralBrdf(shape, weights);
 }
 
 // Each encoding with each activation, named "merl_tanh"; of one, two and three hidden layers, whose
-// sizes aren't all multiples of anything.
+// sizes aren't all multiples of anything. And one of a single channel.
 inline std::vector<std::pair<std::string, NeuralBrdf>> NetworksOfAllKinds() {
   const std::vector<std::vector<int>> hidden = {{21, 21}, {5}, {9, 16, 6}};
   std::vector<std::pair<std::string, NeuralBrdf>> networks;
@@ -44,6 +44,8 @@ inline std::vector<std::pair<std::string, NeuralBrdf>> NetworksOfAllKinds() {
                             RandomNetwork(encoding, activation, hidden[n % 3], n));
     }
   }
+  networks.emplace_back("one_channel",
+                        RandomNetwork(Encoding::kMerl, Activation::kTanh, {7}, 1, /*outputs=*/1));
   return networks;
 }
 

@@ -42,10 +42,10 @@ def path(name):
     return os.path.join(sys.argv[2], name)
 
 
-def random_layers(hidden, seed):
+def random_layers(hidden, seed, outputs=3):
     """Lists of (W, out x in, and b), numbers of single precision."""
     rng = np.random.default_rng(seed)
-    sizes = [6, *hidden, 3]
+    sizes = [6, *hidden, outputs]
     layers = []
     for n_in, n_out in zip(sizes, sizes[1:]):
         layers.append((rng.uniform(-0.6, 0.6, (n_out, n_in)), rng.uniform(-0.6, 0.6, n_out)))
@@ -64,7 +64,7 @@ def write_network(file, layers, encoding, activation):
 
 
 def all_networks():
-    """(name, encoding, file) of each encoding with each activation."""
+    """(name, encoding, file) of each encoding with each activation, and of one with one channel."""
     for n, encoding in enumerate(ENCODINGS):
         for k, activation in enumerate(ACTIVATIONS):
             name = f"{encoding}_{activation}"
@@ -72,6 +72,9 @@ def all_networks():
             seed = 2 * n + k
             write_network(file, random_layers(HIDDEN[seed % 3], seed), encoding, activation)
             yield name, encoding, file
+    file = path("one_channel.safetensors")
+    write_network(file, random_layers([7], 1, outputs=1), "merl", "tanh")
+    yield "one_channel", "merl", file
 
 
 def directions(count, seed=3):

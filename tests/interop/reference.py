@@ -63,4 +63,5 @@ def evaluate(network, wi, wo):
         if n < len(layers):
             x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0)
     f = np.clip(np.expm1(np.minimum(x, 60)), 0, 1e12)
-    return np.where(((wi[:, 2] > 0) & (wo[:, 2] > 0))[:, None], f, 0)
+    f = np.where(((wi[:, 2] > 0) & (wo[:, 2] > 0))[:, None], f, 0)
+    return np.repeat(f, 3 // f.shape[1], axis=1)

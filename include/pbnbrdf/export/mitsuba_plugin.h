@@ -5,14 +5,15 @@
 
 #include <string>
 
-#include "pbnbrdf/export/sampling_lobe.h"
+#include "pbnbrdf/brdf/importance_sampler.h"
 
 namespace pbnbrdf {
 
 // A Python file that registers the BSDF "pbnbrdf" when it is imported after mitsuba.set_variant(),
-// for scalar, LLVM and CUDA variants in RGB or monochromatic mode. It needs nothing but Mitsuba. A
-// scene names another network by the parameter "filename", and other lobes by "alpha" and "glossy";
-// without them it takes the file `network` from beside itself, and the lobe given here.
-std::string MitsubaPlugin(const std::string& network, const SamplingLobe& lobe);
+// for scalar, LLVM and CUDA variants in RGB or monochromatic mode. It needs nothing but Mitsuba. It
+// draws directions as ImportanceSampler does. A scene names another network by the parameter
+// "filename", and its proposal by "alpha_u", "alpha_v" and "lobe_weight"; without them it takes the
+// file `network` from beside itself, and the proposal given here.
+std::string MitsubaPlugin(const std::string& network, const LobeProposal& proposal);
 
 }  // namespace pbnbrdf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ class NeuralBrdf final : public Brdf {
   int NumChannels() const override { return shape_.num_outputs(); }
   std::unique_ptr<Brdf> SinglePrecision() const override;  // a FastNeuralBrdf
   std::string Description() const override;
+
+  // The same f with three outputs: of one output three, for those who know RGB only.
+  NeuralBrdf WithRgbOutputs() const;
 
   const NetworkShape& shape() const { return shape_; }
   const std::vector<double>& weights() const { return weights_; }
