@@ -125,24 +125,12 @@ constexpr std::string_view kOutput = R"(  for (int c = 0; c < 3; ++c) {
 #endif
 )";
 
-std::string Encoder(Encoding encoding) {
-  const std::string theta = std::string(kHalfDiff) + std::string(kThetaH);
-  switch (encoding) {
-    case Encoding::kCartesian:
-      return StrCat(kHalfDiff, kCartesian);
-    case Encoding::kReciprocal:
-      return StrCat(kHalfDiff, kReciprocal);
-    case Encoding::kMultiscale:
-      return StrCat(theta, kMultiscale);
-    case Encoding::kMerl:
-      return StrCat(theta, kRowBend, kMerl);
-    case Encoding::kBilateral:
-      return StrCat(theta, kRowBend, kBilateral);
-    case Encoding::kAnisotropic:
-      return StrCat(theta, kAnisotropic);
-  }
-  return "";
-}
+constexpr EncoderTexts kEncoderTexts = {
+    .elementary = "",
+    .half_diff = kHalfDiff,
+    .theta_h = kThetaH,
+    .row_bend = kRowBend,
+    .inputs = {kCartesian, kReciprocal, kMultiscale, kMerl, kBilateral, kAnisotropic}};
 
 // "static const double @_w1[147] = {...};", a row of [W | b] on a line or more.
 std::string WeightArray(const NeuralBrdf& network, int layer) {
@@ -194,7 +182,7 @@ std::string CSource(const NeuralBrdf& fitted, const std::string& name) {
   const NetworkShape& shape = network.shape();
   std::string text(kHead);
   for (int l = 0; l < shape.num_layers(); ++l) text += WeightArray(network, l);
-  text += Encoder(shape.encoding());
+  text += EncoderText(shape.encoding(), kEncoderTexts);
   text += kLayer;
   text += shape.activation() == Activation::kTanh ? "tanh(y[i])" : "y[i] > 0.0 ? y[i] : 0.0";
   text += kEval;

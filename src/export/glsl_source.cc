@@ -128,24 +128,12 @@ vec3 @_eval(vec3 wi, vec3 wo) {
   @_encode(wi, wo, x0_0, x0_1);
 )";
 
-std::string Encoder(Encoding encoding) {
-  const std::string theta = StrCat(kElementary, kHalfDiff, kThetaH);
-  switch (encoding) {
-    case Encoding::kCartesian:
-      return StrCat(kHalfDiff, kCartesian);
-    case Encoding::kReciprocal:
-      return StrCat(kHalfDiff, kReciprocal);
-    case Encoding::kMultiscale:
-      return StrCat(theta, kMultiscale);
-    case Encoding::kMerl:
-      return StrCat(theta, kRowBend, kMerl);
-    case Encoding::kBilateral:
-      return StrCat(theta, kRowBend, kBilateral);
-    case Encoding::kAnisotropic:
-      return StrCat(theta, kAnisotropic);
-  }
-  return "";
-}
+constexpr EncoderTexts kEncoderTexts = {
+    .elementary = kElementary,
+    .half_diff = kHalfDiff,
+    .theta_h = kThetaH,
+    .row_bend = kRowBend,
+    .inputs = {kCartesian, kReciprocal, kMultiscale, kMerl, kBilateral, kAnisotropic}};
 
 int Quads(int count) { return (count + 3) / 4; }
 
@@ -222,7 +210,7 @@ std::string GlslSource(const NeuralBrdf& fitted, const std::string& name) {
   const NetworkShape& shape = network.shape();
   std::string text(kHead);
   text += shape.activation() == Activation::kTanh ? kTanh : kRelu;
-  text += Encoder(shape.encoding());
+  text += EncoderText(shape.encoding(), kEncoderTexts);
   text += kEval;
   for (int l = 0; l < shape.num_layers(); ++l) text += Pass(network, l);
   text += Output(shape.num_layers());

@@ -60,6 +60,16 @@ std::string CommentText(const NeuralBrdf& network) {
   return text;
 }
 
+std::string EncoderText(Encoding encoding, const EncoderTexts& texts) {
+  const std::string_view inputs = texts.inputs[static_cast<std::size_t>(encoding)];
+  if (encoding == Encoding::kCartesian || encoding == Encoding::kReciprocal) {
+    return StrCat(texts.half_diff, inputs);
+  }
+  const bool has_rows = encoding == Encoding::kMerl || encoding == Encoding::kBilateral;
+  return StrCat(texts.elementary, texts.half_diff, texts.theta_h, has_rows ? texts.row_bend : "",
+                inputs);
+}
+
 float SinglePrecision(double weight) {
   const float rounded = static_cast<float>(weight);
   if (!std::isfinite(rounded)) Fail("weight ", weight, " is beyond single precision");
