@@ -18,20 +18,6 @@ namespace {
 
 using testing::HasSubstr;
 
-double MeanAbsDifference(const Brdf& a, const Brdf& b) {
-  const std::vector<DirectionPair> pairs = RandomPairs(2000, /*seed=*/21);
-  std::vector<Rgb> values_a(pairs.size()), values_b(pairs.size());
-  a.Evaluate(pairs, values_a);
-  b.Evaluate(pairs, values_b);
-  double sum = 0.0;
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    for (int c = 0; c < 3; ++c) {
-      sum += std::abs(std::log1p(values_a[n][c]) - std::log1p(values_b[n][c]));
-    }
-  }
-  return sum / (3.0 * static_cast<double>(pairs.size()));
-}
-
 // The cost after each iteration of a fit.
 std::vector<double> CostTrace(const FitProblem& problem, FitOptions options) {
   std::vector<double> costs;
@@ -361,34 +347,6 @@ TEST(FitBrdf, AdamsToleranceIsOfTheMeanOverFiveEpochs) {
   EXPECT_THAT(fit.summary.message, HasSubstr("mean cost of the last 5 epochs"));
 }
 
-TEST(FitBrdf, TheBestStartGoesOn) {
-  const FitProblem problem = SmallProblem();
-  double least = std::numeric_limits<double>::infinity();
-  FitOptions options;
-  options.starts = 4;
-  options.max_iterations = 12;  // of each start, and none is left after them
-  options.on_iteration = [&](const FitProgress& progress) {
-    least = std::min(least, progress.cost);
-    return true;
-  };
-  const Fit fit = FitBrdf(*MakeBuiltin("satin-gold"), problem, options);
-  EXPECT_LE(fit.summary.final_cost, least);
-  EXPECT_GT(fit.summary.iterations, 4 * 11);
-}
-
-TEST(FitBrdf, GoesOnFromGivenWeights) {
-  const auto gold = MakeBuiltin("satin-gold");
-  FitOptions options;
-  options.max_iterations = 20;
-  const Fit first = FitBrdf(*gold, SmallProblem(), options);
-  options.initial_weights = first.network.weights();
-  options.max_iterations = 0;
-  EXPECT_EQ(FitBrdf(*gold, SmallProblem(), options).network.weights(), first.network.weights());
-  options.max_iterations = 20;
-  const Fit second = FitBrdf(*gold, SmallProblem(), options);
-  EXPECT_LT(second.summary.final_cost, first.summary.final_cost);
-}
-
 TEST(FitBrdf, SaysWhenSinglePrecisionLimitsIt) {
   // A network of this size comes as near to gold as it can, which is not near; to itself it could
   // come without end.
@@ -413,77 +371,6 @@ TEST(FitBrdf, CurvatureOfAPartOfTheSamplesServes) {
   options.curvature_samples = 1000;
   const Fit part = FitBrdf(*gold, problem, options);
   EXPECT_LT(MeanAbsDifference(*gold, part.network), 3.0 * MeanAbsDifference(*gold, all.network));
-}
-
-// Weights of a network of a hidden layer whose units are all dead.
-std::vector<double> DeadWeights(const NetworkShape& shape) {
-  std::vector<double> weights = RandomWeights(shape, 0.5, /*seed=*/3);
-  for (int o = 1; o <= shape.out(0); ++o) weights[o * (shape.in(0) + 1) - 1] = -1000.0;
-  return weights;
-}
-
-TEST(FitBrdf, RefusesGivenWeightsThatLeadNowhere) {
-  FitProblem problem = SmallProblem();
-  const auto error = [&](std::vector<double> weights) {
-    FitOptions options;
-    options.initial_weights = std::move(weights);
-    return ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
-  };
-  for (Activation activation : {Activation::kTanh, Activation::kRelu}) {
-    problem.activation = activation;
-    const NetworkShape shape = problem.Shape();
-    EXPECT_THAT(error(DeadWeights(shape)), HasSubstr("a constant network that stays one"));
-    EXPECT_THAT(error(std::vector<double>(shape.num_weights(), 0.0)),
-                HasSubstr("a constant network that stays one"));
-    EXPECT_THAT(error(std::vector<double>(shape.num_weights(), 1e30)),
-                HasSubstr("the cost or its gradient isn't finite"));
-    std::vector<double> weights = RandomWeights(shape, 0.5, /*seed=*/3);
-    weights[1] = std::numeric_limits<double>::infinity();
-    EXPECT_THAT(error(weights), HasSubstr("initial_weights: one isn't finite"));
-  }
-}
-
-TEST(FitBrdf, SaysWhyWhereTheFirstStageCantStart) {
-  // The cost and its gradient are finite, J'J isn't in single precision.
-  FitProblem problem = SmallProblem();
-  problem.loss = Loss::kL2;
-  problem.log_weight = 2e39;
-  FitOptions options;
-  for (Solver solver : {Solver::kTinyLm, Solver::kLm}) {
-    options.solver = solver;
-    const std::string error =
-        ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
-    EXPECT_THAT(error, HasSubstr("no start: ")) << NameOf(kSolvers, solver);
-    EXPECT_THAT(error, testing::Not(HasSubstr("random"))) << "not of the gradient";
-  }
-}
-
-TEST(FitBrdf, AConstantNetworkIsAStartForAConstantMaterial) {
-  const FitProblem problem = SmallProblem();
-  FitOptions options;
-  options.initial_weights = DeadWeights(problem.Shape());
-  options.max_iterations = 20;
-  const auto white = MakeBuiltin("spectralon");
-  EXPECT_LT(MeanAbsDifference(*white, FitBrdf(*white, problem, options).network), 1e-3);
-}
-
-TEST(FitBrdf, DrawsRandomWeightsAnewWhereAllUnitsAreDead) {
-  FitProblem problem = SmallProblem();
-  problem.hidden = {1, 1};
-  problem.activation = Activation::kRelu;
-  FitOptions options;
-  options.max_iterations = 5;
-  const auto gold = MakeBuiltin("satin-gold");
-  int restarted = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    problem.seed = seed;
-    const Fit fit = FitBrdf(*gold, problem, options);
-    if (fit.summary.restarts == 0) continue;
-    ++restarted;
-    EXPECT_EQ(FitBrdf(*gold, problem, options).network.weights(), fit.network.weights());
-  }
-  EXPECT_GT(restarted, 0);
-  EXPECT_LT(restarted, 10);
 }
 
 TEST(FitBrdf, AdamThatDivergesReturnsItsBestEpoch) {
@@ -514,25 +401,6 @@ TEST(FitBrdf, CountsWhatTheSolversMeet) {
     const FitSummary summary = FitBrdf(*MakeBuiltin("polished-chromium"), problem, options).summary;
     EXPECT_GT(summary.rejected_steps, 0);
     EXPECT_LT(summary.rejected_steps + summary.failed_factorizations, summary.iterations);
-  }
-}
-
-TEST(FitBrdf, APerfectStartIsConvergedAtOnce) {
-  // A black material, and a network of zeros but for its units' weights: the cost is 0.
-  const FitProblem problem = SmallProblem();
-  const NetworkShape shape = problem.Shape();
-  std::vector<double> weights = RandomWeights(shape, 0.5, /*seed=*/3);
-  std::fill(weights.begin() + shape.offset(1), weights.end(), 0.0);
-  const NeuralBrdf black(shape, weights);
-  FitOptions options;
-  options.initial_weights = weights;
-  for (Solver solver : {Solver::kTinyLm, Solver::kLm, Solver::kLbfgs, Solver::kAdam}) {
-    options.solver = solver;
-    options.max_iterations = 12;
-    const Fit fit = FitBrdf(black, problem, options);
-    EXPECT_EQ(fit.summary.final_cost, 0.0);
-    EXPECT_EQ(fit.network.weights(), weights);
-    EXPECT_THAT(fit.summary.message, testing::Not(HasSubstr("nan")));
   }
 }
 
