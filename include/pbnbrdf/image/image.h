@@ -1,0 +1,25 @@
+// image.h: images in memory.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace pbnbrdf {
+
+// Linear RGB, height x width x 3, rows from the top.
+struct Image {
+  Image() = default;
+  Image(int w, int h) : width(w), height(h), rgb(3 * std::size_t(w) * std::size_t(h)) {}
+
+  float* pixel(int x, int y) {
+    return &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
+  }
+  const float* pixel(int x, int y) const {
+    return &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
+  }
+
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+};
+
+}  // namespace pbnbrdf
