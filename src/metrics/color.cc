@@ -16,6 +16,12 @@ constexpr double kToXyz[3][3] = {{0.4123907992659595, 0.357584339383878, 0.18048
                                  {0.21263900587151036, 0.715168678767756, 0.07219231536073371},
                                  {0.01933081871559185, 0.11919477979462599, 0.9505321522496607}};
 
+// The inverse.
+constexpr double kFromXyz[3][3] = {
+    {3.2409699419045226, -1.537383177570094, -0.4986107602930034},
+    {-0.9692436362808796, 1.8759675015077202, 0.04155505740717559},
+    {0.05563007969699366, -0.20397695888897652, 1.0569715142428786}};
+
 // CIELAB's compressive function: a cube root that continues as a line towards 0.
 double Compress(double t) {
   constexpr double kKnee = 6.0 / 29.0;
@@ -55,6 +61,14 @@ std::array<double, 3> ToXyz(const Rgb& linear) {
     for (int c = 0; c < 3; ++c) xyz[i] += kToXyz[i][c] * linear[c];
   }
   return xyz;
+}
+
+Rgb FromXyz(const std::array<double, 3>& xyz) {
+  Rgb linear = {};
+  for (int c = 0; c < 3; ++c) {
+    for (int i = 0; i < 3; ++i) linear[c] += kFromXyz[c][i] * xyz[i];
+  }
+  return linear;
 }
 
 double Luminance(const Rgb& linear) { return ToXyz(linear)[1]; }

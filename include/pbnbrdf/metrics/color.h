@@ -19,6 +19,9 @@ namespace pbnbrdf {
 // X, Y, Z; Y, the luminance, is 1 for white.
 std::array<double, 3> ToXyz(const Rgb& linear);
 
+// The inverse of ToXyz.
+Rgb FromXyz(const std::array<double, 3>& xyz);
+
 // Y alone.
 double Luminance(const Rgb& linear);
 
