@@ -4,9 +4,9 @@
 set -eu
 cd "$(dirname "$0")"
 build=build
-packages="ccache cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libgflags-dev libgmock-dev
-          libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libopenexr-dev libpng-dev libtbb-dev
-          ninja-build nlohmann-json3-dev pkgconf"
+packages="ccache cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libembree-dev libgflags-dev
+          libgmock-dev libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libopenexr-dev libpng-dev
+          libtbb-dev ninja-build nlohmann-json3-dev pkgconf"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi

@@ -11,13 +11,16 @@ forbid() {  # forbid PATTERN FOLDER...
   fi
 }
 forbid 'gflags|glog' include src/base src/export src/kernels src/brdf src/models src/network src/problem \
-  src/solve src/image src/metrics
+  src/solve src/image src/metrics src/render
 forbid 'ceres|Eigen' include/pbnbrdf/base include/pbnbrdf/kernels include/pbnbrdf/brdf \
   include/pbnbrdf/models include/pbnbrdf/network include/pbnbrdf/image include/pbnbrdf/metrics \
-  include/pbnbrdf/export src/base src/kernels src/brdf src/network src/image src/metrics src/export
+  include/pbnbrdf/export include/pbnbrdf/render src/base src/kernels src/brdf src/network src/image \
+  src/metrics src/export src/render
 forbid 'nlohmann' include src/base src/export src/kernels src/models src/problem src/solve src/image src/metrics
 forbid 'hdf5|H5' include src/base src/export src/kernels src/brdf src/models src/problem src/solve src/image \
-  src/metrics src/cli
+  src/metrics src/cli src/render
 forbid 'Imf|OpenEXR|png\.h' include src/base src/export src/kernels src/brdf src/models src/network src/problem \
-  src/solve src/metrics src/cli
+  src/solve src/metrics src/cli src/render
+forbid 'embree' include src/base src/export src/kernels src/brdf src/models src/network src/problem src/solve \
+  src/image src/metrics src/cli
 exit $status

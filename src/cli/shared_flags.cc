@@ -7,7 +7,7 @@
 #include "pbnbrdf/brdf/scaled.h"
 #include "pbnbrdf/network/open_brdf.h"
 
-DEFINE_string(material, "", "source of reflectance, see below");
+DEFINE_string(material, "", "source of reflectance, see below; render: NAME=SOURCE, likewise");
 DEFINE_double(
     scale_to_albedo, 0.0,
     "scale the material so that its largest directional albedo, up to 85 degrees, is this; "

@@ -1,0 +1,173 @@
+// pbnbrdf render
+#include <gflags/gflags.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "commands.h"
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/base/text.h"
+#include "pbnbrdf/image/exr.h"
+#include "pbnbrdf/image/png.h"
+#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/render/render.h"
+#include "shared_flags.h"
+
+DECLARE_uint64(seed);
+DECLARE_int32(threads);
+DECLARE_bool(quiet);
+DEFINE_string(scene, "", "scene file (JSON); problems/scenes/README.md describes it");
+DEFINE_string(environment, "",
+              "OpenEXR file, latitude-longitude, in place of the scene's environment light");
+DEFINE_string(png, "", "write the image as PNG (sRGB), too");
+DEFINE_double(exposure, 1.0, "of the PNG: what radiance is multiplied by, > 0");
+DEFINE_int32(samples_per_pixel, 256, "paths for each pixel");
+DEFINE_int32(max_bounces, 64, "reflections between camera and light, at most");
+DEFINE_string(estimator, "mis",
+              "where the light at a reflection is looked for: brdf (where the material reflects), "
+              "light, or mis (both); the images differ in noise only");
+
+namespace pbnbrdf::cli {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+// Ctrl-C asks the render to stop after the tile; a second one ends the program.
+void OnInterrupt(int) {
+  interrupted = true;
+  std::signal(SIGINT, SIG_DFL);
+}
+
+// --material=NAME=SOURCE, several with ; in between.
+std::map<std::string, std::string> MaterialChanges() {
+  std::map<std::string, std::string> sources;
+  if (FLAGS_material.empty()) return sources;
+  for (const std::string& change : Split(FLAGS_material, ';')) {
+    const std::size_t equals = change.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == change.size()) {
+      throw UsageError(StrCat("--material=", change, "; of the form NAME=SOURCE"));
+    }
+    if (!sources.emplace(change.substr(0, equals), change.substr(equals + 1)).second) {
+      throw UsageError(StrCat("--material: ", change.substr(0, equals), " is there twice"));
+    }
+  }
+  return sources;
+}
+
+RenderOptions ParseOptions() try {
+  RenderOptions options;
+  options.samples_per_pixel = FLAGS_samples_per_pixel;
+  options.seed = FLAGS_seed;
+  options.threads = FLAGS_threads;
+  options.max_bounces = FLAGS_max_bounces;
+  options.estimator = ParseName(kEstimators, "--estimator", FLAGS_estimator);
+  ValidateRender(options);
+  if (!(FLAGS_exposure > 0.0) || !std::isfinite(FLAGS_exposure)) {
+    Fail("--exposure = ", FLAGS_exposure, "; must be finite and > 0");
+  }
+  return options;
+} catch (const Error& error) {
+  std::string message = error.what();
+  const std::string_view field = "RenderOptions::";  // its fields are called as the flags are
+  if (message.starts_with(field)) message.replace(0, field.size(), "--");
+  throw UsageError(message);
+}
+
+std::map<std::string, std::string> Metadata(const RenderSummary& summary) {
+  std::map<std::string, std::string> metadata = {{"pbnbrdf:version", PBNBRDF_VERSION},
+                                                 {"pbnbrdf:scene", FLAGS_scene},
+                                                 {"pbnbrdf:seed", StrCat(FLAGS_seed)},
+                                                 {"pbnbrdf:samples", StrCat(summary.samples)}};
+  metadata["pbnbrdf:stopped"] = summary.stopped ? "true" : "false";
+  for (const std::string& line :
+       FlagLines({"environment", "material", "samples_per_pixel", "max_bounces", "estimator"})) {
+    const std::size_t equals = line.find('=');
+    metadata["pbnbrdf:" + line.substr(2, equals - 2)] = line.substr(equals + 1);
+  }
+  return metadata;
+}
+
+void WriteImages(const Rendering& rendering) {
+  std::vector<FileContent> files = {{FLAGS_out, ExrBytes(rendering.image, Metadata(rendering.summary))}};
+  if (!FLAGS_png.empty()) files.push_back({FLAGS_png, PngBytes(rendering.image, FLAGS_exposure)});
+  WriteFiles(files);
+}
+
+void CheckOutputs() {
+  CheckWritable(FLAGS_out);
+  if (FLAGS_png.empty()) return;
+  CheckWritable(FLAGS_png);
+  if (FLAGS_png == FLAGS_out) throw UsageError(StrCat(FLAGS_out, ": is to be two outputs at once"));
+}
+
+void PrintSummary(const Image& image, const RenderSummary& summary) {
+  std::cout << FLAGS_out << ": " << image.width << " x " << image.height << " pixels, "
+            << summary.samples << " samples, " << summary.seconds << " s"
+            << (summary.stopped ? "; stopped early" : "") << "\n";
+}
+
+int RunRender(const std::string&) {
+  RequireFlag("scene", FLAGS_scene);
+  RequireFlag("out", FLAGS_out);
+  RenderOptions options = ParseOptions();
+  const SceneChanges changes = {FLAGS_environment, MaterialChanges()};
+  CheckOutputs();
+  const Scene scene = ReadScene(FLAGS_scene, changes);
+  std::signal(SIGINT, OnInterrupt);
+  const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
+  int shown = -1;
+  options.on_progress = [&](const RenderProgress& progress) {
+    const int percent = static_cast<int>(100.0 * progress.fraction);
+    if (show_progress && percent != shown) {
+      shown = percent;
+      std::fprintf(stderr, "\r\033[K%d %%  %.1f s", percent, progress.seconds);
+    }
+    return !interrupted;
+  };
+  const Rendering rendering = [&] {
+    try {
+      return Render(scene, OpenBrdf, options);
+    } catch (const Error& error) {
+      Fail(FLAGS_scene, ": ", error.what());
+    }
+  }();
+  if (show_progress) std::fprintf(stderr, "\r\033[K");
+  WriteImages(rendering);
+  const RenderSummary& summary = rendering.summary;
+  if (!FLAGS_quiet && FLAGS_out != "-") PrintSummary(rendering.image, summary);
+  if (summary.dropped_samples > 0) {
+    std::cerr << "pbnbrdf: " << summary.dropped_samples
+              << " samples dropped: their radiance wasn't finite\n";
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command RenderCommand() {
+  Command command;
+  command.name = "render";
+  command.summary = "renders a scene with any materials, fitted networks too";
+  command.usage =
+      "  pbnbrdf render --scene=problems/scenes/sphere.json --out=sphere.exr --png=sphere.png\n"
+      "  pbnbrdf render --scene=problems/scenes/sphere.json --environment=studio.exr \\\n"
+      "                 --material=surface=gold.safetensors --out=gold.exr\n";
+  command.notes =
+      "--material=NAME=SOURCE gives the scene's material NAME another source, several with ; in\n"
+      "between. Files that a scene names are in its folder; sources of materials may be, too.\n"
+      "Materials that no shape has aren't opened.\n"
+      "\nThe OpenEXR file holds linear radiance, RGB as float, and says in its header how it was made.\n"
+      "The image depends on the seed, not on the number of threads. Ctrl-C stops after the tile and\n"
+      "keeps the image so far.\n\n" +
+      std::string(kSourceNotes);
+  command.flags = {{"",
+                    {"scene", "environment", "material", "out", "png", "exposure",
+                     "samples_per_pixel", "seed", "max_bounces", "estimator", "threads", "quiet"}}};
+  command.run = RunRender;
+  return command;
+}
+
+}  // namespace pbnbrdf::cli

@@ -1,0 +1,247 @@
+#include "geometry.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
+
+#include <limits>
+
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+namespace {
+
+// Of what Embree is off by, relative to the coordinates: a few roundings of float.
+constexpr double kRelativeMargin = 1e-6;
+
+struct Sphere {
+  Affine to_world, to_unit;
+  int material;
+};
+
+struct Mesh {
+  TriangleMesh mesh;
+  Vec3 tangent;
+  int material, light;
+};
+
+// Solves |o + t d| = 1. By way of the point nearest to the center, and without differences of
+// nearly equal numbers: spheres may be small and far away.
+bool SolveUnitSphere(const Vec3& o, const Vec3& d, double* near, double* far) {
+  const double a = Dot(d, d), b = -Dot(o, d), c = Dot(o, o) - 1.0;
+  const Vec3 nearest = o + (b / a) * d;
+  const double discriminant = a * (1.0 - Dot(nearest, nearest));
+  if (!(discriminant >= 0.0)) return false;
+  const double q = b + std::copysign(std::sqrt(discriminant), b);
+  if (q == 0.0) return false;
+  *near = std::min(c / q, q / a);
+  *far = std::max(c / q, q / a);
+  return true;
+}
+
+RTCBounds SphereBounds(const Sphere& sphere) {
+  // The reach of an ellipsoid along an axis is the length of that row of its matrix.
+  const auto& [u, v, w] = sphere.to_world.axes;
+  const Vec3 reach = {std::hypot(u.x, v.x, w.x), std::hypot(u.y, v.y, w.y),
+                      std::hypot(u.z, v.z, w.z)};
+  const Vec3& o = sphere.to_world.origin;
+  const double slack = kRelativeMargin * (LargestCoordinate(o) + LargestCoordinate(reach));
+  RTCBounds bounds = {};
+  bounds.lower_x = static_cast<float>(o.x - reach.x - slack);
+  bounds.lower_y = static_cast<float>(o.y - reach.y - slack);
+  bounds.lower_z = static_cast<float>(o.z - reach.z - slack);
+  bounds.upper_x = static_cast<float>(o.x + reach.x + slack);
+  bounds.upper_y = static_cast<float>(o.y + reach.y + slack);
+  bounds.upper_z = static_cast<float>(o.z + reach.z + slack);
+  return bounds;
+}
+
+// The nearest distance in (ray.tnear, ray.tfar) at which the ray meets the sphere, or 0.
+float MeetSphere(const Sphere& sphere, RTCRayN* ray) {
+  const Vec3 o = {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)};
+  const Vec3 d = {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)};
+  double near, far;
+  if (!SolveUnitSphere(sphere.to_unit.Point(o), sphere.to_unit.Vector(d), &near, &far)) return 0;
+  for (const double t : {near, far}) {
+    if (t > RTCRayN_tnear(ray, 1, 0) && t < RTCRayN_tfar(ray, 1, 0)) return static_cast<float>(t);
+  }
+  return 0;
+}
+
+void BoundsOfSphere(const RTCBoundsFunctionArguments* args) {
+  const auto* spheres = static_cast<const Sphere*>(args->geometryUserPtr);
+  *args->bounds_o = SphereBounds(spheres[args->primID]);
+}
+
+void IntersectSphere(const RTCIntersectFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, 1);
+  const float t = MeetSphere(static_cast<const Sphere*>(args->geometryUserPtr)[args->primID], ray);
+  if (!(t > 0.0f)) return;
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, 1);
+  RTCRayN_tfar(ray, 1, 0) = t;
+  RTCHitN_primID(hit, 1, 0) = args->primID;
+  RTCHitN_geomID(hit, 1, 0) = args->geomID;
+  RTCHitN_instID(hit, 1, 0, 0) = args->context->instID[0];
+}
+
+void OccludeSphere(const RTCOccludedFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  if (MeetSphere(static_cast<const Sphere*>(args->geometryUserPtr)[args->primID], args->ray) > 0) {
+    RTCRayN_tfar(args->ray, 1, 0) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+RTCRay MakeRay(const Ray& ray, double distance) {
+  RTCRay r = {};
+  r.org_x = static_cast<float>(ray.origin.x);
+  r.org_y = static_cast<float>(ray.origin.y);
+  r.org_z = static_cast<float>(ray.origin.z);
+  r.dir_x = static_cast<float>(ray.direction.x);
+  r.dir_y = static_cast<float>(ray.direction.y);
+  r.dir_z = static_cast<float>(ray.direction.z);
+  r.tfar = static_cast<float>(distance);
+  r.mask = ~0u;
+  return r;
+}
+
+TriangleMesh MeshOf(const RectangleLight& light) {
+  const Vec3 c = light.center, x = light.x_axis, y = light.y_axis;
+  TriangleMesh mesh;
+  mesh.positions = {c - x - y, c + x - y, c + x + y, c - x + y};
+  mesh.triangles = {{{0, 1, 2}, {0, 2, 3}}};
+  return mesh;
+}
+
+}  // namespace
+
+struct Geometry::Embree {
+  Embree() : device(rtcNewDevice(nullptr)) {
+    if (device == nullptr) Fail("Embree can't be used: error ", rtcGetDeviceError(nullptr));
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  }
+  ~Embree() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+
+  void Attach(RTCGeometry geometry, unsigned id) {
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+  }
+
+  void AttachMesh(const TriangleMesh& mesh, unsigned id) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), mesh.positions.size()));
+    auto* indices = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(unsigned), mesh.triangles.size()));
+    if (vertices == nullptr || indices == nullptr) Fail("Embree: out of memory");
+    for (const Vec3& p : mesh.positions) {
+      for (double value : {p.x, p.y, p.z}) *vertices++ = static_cast<float>(value);
+    }
+    for (const auto& triangle : mesh.triangles) {
+      for (unsigned index : triangle) *indices++ = index;
+    }
+    Attach(geometry, id);
+  }
+
+  void AttachSpheres(unsigned id) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(spheres.size()));
+    rtcSetGeometryUserData(geometry, spheres.data());
+    rtcSetGeometryBoundsFunction(geometry, BoundsOfSphere, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, IntersectSphere);
+    rtcSetGeometryOccludedFunction(geometry, OccludeSphere);
+    Attach(geometry, id);
+  }
+
+  void Build() {
+    for (std::size_t i = 0; i < meshes.size(); ++i) AttachMesh(meshes[i].mesh, unsigned(i));
+    if (!spheres.empty()) AttachSpheres(static_cast<unsigned>(meshes.size()));
+    // By one thread: where two things are equally near, the order that they are built in decides.
+    tbb::task_arena(1).execute([&] { rtcCommitScene(scene); });
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE) Fail("Embree can't build the scene: error ", int(error));
+  }
+
+  void HitSphere(const Sphere& sphere, const Ray& ray, double t, Hit* hit) const {
+    const Vec3 n = Normalized(sphere.to_unit.Point(ray.origin + t * ray.direction));
+    hit->material = sphere.material;
+    hit->position = sphere.to_world.Point(n);
+    hit->normal = hit->shading_normal = Normalized(sphere.to_world.Normal(n));
+    hit->tangent = sphere.to_world.Vector({n.z, 0.0, -n.x});
+    double extent = LargestCoordinate(sphere.to_world.origin);
+    for (const Vec3& axis : sphere.to_world.axes) extent += LargestCoordinate(axis);
+    hit->margin = kRelativeMargin * extent;
+  }
+
+  void HitMesh(const Mesh& shape, unsigned triangle, double u, double v, Hit* hit) const {
+    const auto& [i, j, k] = shape.mesh.triangles[triangle];
+    const Vec3 a = shape.mesh.positions[i], b = shape.mesh.positions[j], c = shape.mesh.positions[k];
+    hit->light = shape.light;
+    hit->material = shape.material;
+    hit->position = (1.0 - u - v) * a + u * b + v * c;
+    hit->normal = hit->shading_normal = Normalized(Cross(b - a, c - a));
+    hit->tangent = shape.tangent;
+    hit->margin = kRelativeMargin * std::max({LargestCoordinate(a), LargestCoordinate(b),
+                                              LargestCoordinate(c)});
+    if (shape.mesh.normals.empty()) return;
+    const auto& normals = shape.mesh.normals;
+    const Vec3 sum = (1.0 - u - v) * Normalized(normals[i]) + u * Normalized(normals[j]) +
+                     v * Normalized(normals[k]);
+    if (Length(sum) > 1e-6) hit->shading_normal = Normalized(sum);
+  }
+
+  RTCDevice device;
+  RTCScene scene;
+  std::vector<Sphere> spheres;
+  std::vector<Mesh> meshes;
+};
+
+Geometry::Geometry(const Scene& scene) : embree_(std::make_unique<Embree>()) {
+  for (const Shape& shape : scene.shapes) {
+    if (shape.sphere) {
+      const Affine& map = shape.sphere->to_world;
+      embree_->spheres.push_back({map, map.Inverse(), shape.material});
+    } else {
+      embree_->meshes.push_back({shape.mesh.mesh, shape.mesh.tangent, shape.material, -1});
+    }
+  }
+  for (std::size_t i = 0; i < scene.rectangle_lights.size(); ++i) {
+    embree_->meshes.push_back({MeshOf(scene.rectangle_lights[i]), {}, -1, static_cast<int>(i)});
+  }
+  embree_->Build();
+}
+
+Geometry::~Geometry() = default;
+
+bool Geometry::Intersect(const Ray& ray, Hit* hit) const {
+  RTCRayHit found = {MakeRay(ray, std::numeric_limits<double>::infinity()), {}};
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(embree_->scene, &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  *hit = {};
+  if (found.hit.geomID == embree_->meshes.size()) {
+    embree_->HitSphere(embree_->spheres[found.hit.primID], ray, found.ray.tfar, hit);
+  } else {
+    embree_->HitMesh(embree_->meshes[found.hit.geomID], found.hit.primID, found.hit.u, found.hit.v,
+                     hit);
+  }
+  return true;
+}
+
+bool Geometry::Occluded(const Ray& ray, double distance) const {
+  RTCRay r = MakeRay(ray, distance);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(embree_->scene, &context, &r);
+  return r.tfar < 0.0f;
+}
+
+}  // namespace pbnbrdf

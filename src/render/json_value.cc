@@ -1,0 +1,144 @@
+#include "json_value.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pbnbrdf/base/text.h"
+#include "pbnbrdf/render/affine.h"
+
+namespace pbnbrdf {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kDeepest = 64;
+constexpr std::size_t kLongestQuote = 60;
+
+std::string Quoted(const ordered_json& json) {
+  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return text.size() > kLongestQuote ? text.substr(0, kLongestQuote) + "..." : text;
+}
+
+}  // namespace
+
+ordered_json ParseJson(const std::string& text) {
+  using Event = ordered_json::parse_event_t;
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto watch = [&](int depth, Event event, ordered_json& parsed) {
+    if (depth > kDeepest) Fail("not a scene: nested more than ", kDeepest, " deep");
+    if (event == Event::object_start) keys.emplace_back();
+    if (event == Event::object_end) keys.pop_back();
+    if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second) {
+      Fail("key ", Quoted(parsed), " is there twice");
+    }
+    return true;
+  };
+  try {
+    return ordered_json::parse(text, watch);
+  } catch (const ordered_json::exception& error) {
+    const std::string message = error.what();  // "[json.exception.NAME.NUMBER] WHAT"
+    const std::size_t end = message.find("] ");
+    Fail("not JSON: ", end == std::string::npos ? message : message.substr(end + 2));
+  }
+}
+
+std::string JsonValue::Text() const {
+  if (!json_->is_string()) Refuse("expected a text, found ", Quoted(*json_));
+  return json_->get<std::string>();
+}
+
+double JsonValue::Finite(const ordered_json& json) const {
+  if (!json.is_number()) Refuse("expected a number, found ", Quoted(json));
+  const double value = json.get<double>();
+  if (!std::isfinite(value)) Refuse("must be finite");
+  return value;
+}
+
+double JsonValue::Number() const { return Finite(*json_); }
+
+double JsonValue::Positive() const {
+  const double value = Number();
+  if (!(value > 0.0)) Refuse("is ", value, "; must be > 0");
+  return value;
+}
+
+double JsonValue::NotNegative() const {
+  const double value = Number();
+  if (!(value >= 0.0)) Refuse("is ", value, "; must be >= 0");
+  return value;
+}
+
+int JsonValue::Whole(int least, int most) const {
+  const double value = Number();
+  if (!(value >= least && value <= most && value == std::floor(value))) {
+    Refuse("is ", value, "; must be a whole number from ", least, " to ", most);
+  }
+  return static_cast<int>(value);
+}
+
+Vec3 JsonValue::Vector() const {
+  if (!json_->is_array() || json_->size() != 3) {
+    Refuse("expected three numbers, found ", Quoted(*json_));
+  }
+  return {Finite((*json_)[0]), Finite((*json_)[1]), Finite((*json_)[2])};
+}
+
+Vec3 JsonValue::Direction() const {
+  const Vec3 v = Vector();
+  const double length = Length(v);
+  if (!(length > 0.0) || !std::isfinite(length)) Refuse("must have a length that isn't 0");
+  return Normalized(v);
+}
+
+Rgb JsonValue::Color() const {
+  Rgb color;
+  if (json_->is_number()) {
+    color.fill(Number());
+  } else {
+    const Vec3 v = Vector();
+    color = {v.x, v.y, v.z};
+  }
+  for (double channel : color) {
+    if (!(channel >= 0.0)) Refuse("has a channel of ", channel, "; must be >= 0");
+    if (channel > 1e30) Refuse("has a channel of ", channel, "; must be at most 1e30");
+  }
+  return color;
+}
+
+void JsonValue::RequireObject() const {
+  if (!json_->is_object()) Refuse("expected an object, {...}");
+}
+
+void JsonValue::CheckKeys(const std::vector<std::string>& known) const {
+  RequireObject();
+  for (const auto& [key, value] : json_->items()) {
+    if (std::count(known.begin(), known.end(), key) > 0) continue;
+    Refuse("key ", Quoted(key), " isn't known; did you mean \"", Nearest(known, key), "\"?");
+  }
+}
+
+JsonValue JsonValue::At(const std::string& key) const {
+  RequireObject();
+  const auto found = json_->find(key);
+  if (found == json_->end()) Refuse("has no \"", key, "\"");
+  return JsonValue(*found, place_.empty() ? key : place_ + "." + key);
+}
+
+std::vector<std::pair<std::string, JsonValue>> JsonValue::Members() const {
+  RequireObject();
+  std::vector<std::pair<std::string, JsonValue>> members;
+  for (const auto& item : json_->items()) members.emplace_back(item.key(), At(item.key()));
+  return members;
+}
+
+std::vector<JsonValue> JsonValue::Elements() const {
+  if (!json_->is_array()) Refuse("expected a list, [...]");
+  std::vector<JsonValue> elements;
+  for (std::size_t i = 0; i < json_->size(); ++i) {
+    elements.emplace_back((*json_)[i], StrCat(place_, "[", i, "]"));
+  }
+  return elements;
+}
+
+}  // namespace pbnbrdf

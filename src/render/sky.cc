@@ -1,0 +1,45 @@
+#include "sky.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace pbnbrdf {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kWidth = 1024, kHeight = 512, kSub = 4;
+
+Rgb Radiance(const Sky& sky, const Vec3& direction) {
+  if (sky.sun_radius > 0.0 &&
+      Dot(direction, sky.sun_direction) >= std::cos(sky.sun_radius * kPi / 180.0)) {
+    return sky.sun;
+  }
+  if (direction.y < 0.0) return sky.ground;
+  Rgb radiance;
+  for (int c = 0; c < 3; ++c) {
+    radiance[c] = sky.horizon[c] + direction.y * (sky.zenith[c] - sky.horizon[c]);
+  }
+  return radiance;
+}
+
+}  // namespace
+
+Image SkyImage(const Sky& sky) {
+  Image image(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      Rgb sum = {};
+      for (int k = 0; k < kSub * kSub; ++k) {
+        const double theta = kPi * (y + (k / kSub + 0.5) / kSub) / kHeight;
+        const double phi = 2.0 * kPi * (x + (k % kSub + 0.5) / kSub) / kWidth;
+        const Rgb radiance = Radiance(sky, {std::sin(theta) * std::sin(phi), std::cos(theta),
+                                            -std::sin(theta) * std::cos(phi)});
+        for (int c = 0; c < 3; ++c) sum[c] += radiance[c];
+      }
+      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = float(sum[c] / (kSub * kSub));
+    }
+  }
+  return image;
+}
+
+}  // namespace pbnbrdf
