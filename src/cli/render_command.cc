@@ -91,7 +91,8 @@ std::map<std::string, std::string> Metadata(const RenderSummary& summary) {
 }
 
 void WriteImages(const Rendering& rendering) {
-  std::vector<FileContent> files = {{FLAGS_out, ExrBytes(rendering.image, Metadata(rendering.summary))}};
+  std::vector<FileContent> files = {
+      {FLAGS_out, ExrBytes(rendering.image, Metadata(rendering.summary))}};
   if (!FLAGS_png.empty()) files.push_back({FLAGS_png, PngBytes(rendering.image, FLAGS_exposure)});
   WriteFiles(files);
 }
@@ -159,8 +160,10 @@ Command RenderCommand() {
       "--material=NAME=SOURCE gives the scene's material NAME another source, several with ; in\n"
       "between. Files that a scene names are in its folder; sources of materials may be, too.\n"
       "Materials that no shape has aren't opened.\n"
-      "\nThe OpenEXR file holds linear radiance, RGB as float, and says in its header how it was made.\n"
-      "The image depends on the seed, not on the number of threads. Ctrl-C stops after the tile and\n"
+      "\nThe OpenEXR file holds linear radiance, RGB as float, and says in its header how it was "
+      "made.\n"
+      "The image depends on the seed, not on the number of threads. Ctrl-C stops after the tile "
+      "and\n"
       "keeps the image so far.\n\n" +
       std::string(kSourceNotes);
   command.flags = {{"",

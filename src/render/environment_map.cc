@@ -90,8 +90,7 @@ double EnvironmentMap::Pdf(const Vec3& direction) const {
   return IsBlack() ? 0.0 : Density(TexelAt(direction));
 }
 
-Vec3 EnvironmentMap::Sample(const std::array<double, 2>& u, double* pdf,
-                            Rgb* radiance) const {
+Vec3 EnvironmentMap::Sample(const std::array<double, 2>& u, double* pdf, Rgb* radiance) const {
   const int width = radiance_.width;
   double across, down;
   const int y = Choose(rows_.data(), radiance_.height, u[1], &down);

@@ -181,14 +181,15 @@ struct Geometry::Embree {
 
   void HitMesh(const Mesh& shape, unsigned triangle, double u, double v, Hit* hit) const {
     const auto& [i, j, k] = shape.mesh.triangles[triangle];
-    const Vec3 a = shape.mesh.positions[i], b = shape.mesh.positions[j], c = shape.mesh.positions[k];
+    const Vec3 a = shape.mesh.positions[i], b = shape.mesh.positions[j],
+               c = shape.mesh.positions[k];
     hit->light = shape.light;
     hit->material = shape.material;
     hit->position = (1.0 - u - v) * a + u * b + v * c;
     hit->normal = hit->shading_normal = Normalized(Cross(b - a, c - a));
     hit->tangent = shape.tangent;
-    hit->margin = kRelativeMargin * std::max({LargestCoordinate(a), LargestCoordinate(b),
-                                              LargestCoordinate(c)});
+    hit->margin = kRelativeMargin *
+                  std::max({LargestCoordinate(a), LargestCoordinate(b), LargestCoordinate(c)});
     if (shape.mesh.normals.empty()) return;
     const auto& normals = shape.mesh.normals;
     const Vec3 sum = (1.0 - u - v) * Normalized(normals[i]) + u * Normalized(normals[j]) +

@@ -74,8 +74,7 @@ bool Lights::Sample(const Vec3& position, Random* random, LightSample* sample) c
 bool Lights::SampleRectangle(const RectangleLight& light, const Vec3& position, Random* random,
                              LightSample* sample) const {
   const auto [u, v] = random->Pair();
-  const Vec3 point =
-      light.center + (2.0 * u - 1.0) * light.x_axis + (2.0 * v - 1.0) * light.y_axis;
+  const Vec3 point = light.center + (2.0 * u - 1.0) * light.x_axis + (2.0 * v - 1.0) * light.y_axis;
   const Vec3 to_light = point - position;
   const double squared = Dot(to_light, to_light), distance = std::sqrt(squared);
   if (!(distance > 0.0)) return false;

@@ -58,12 +58,14 @@ class ObjParser {
 
   // "v x y z", and more numbers that don't matter here: a weight or a colour.
   static Vec3 Vector(const std::vector<std::string_view>& words) {
-    if (words.size() < 4) Fail("'", words[0], "' has ", words.size() - 1, " numbers, 3 were expected");
+    if (words.size() < 4)
+      Fail("'", words[0], "' has ", words.size() - 1, " numbers, 3 were expected");
     return {ParseNumber("x", words[1]), ParseNumber("y", words[2]), ParseNumber("z", words[3])};
   }
 
   void Face(const std::vector<std::string_view>& words) {
-    if (words.size() < 4) Fail("a face of ", words.size() - 1, " corners, at least 3 were expected");
+    if (words.size() < 4)
+      Fail("a face of ", words.size() - 1, " corners, at least 3 were expected");
     const Corner first = ParseCorner(words[1]);
     for (std::size_t i = 2; i + 1 < words.size(); ++i) {
       triangles_.push_back({first, ParseCorner(words[i]), ParseCorner(words[i + 1])});

@@ -60,8 +60,8 @@ Vertex MakeVertex(const Hit& hit, std::size_t path, const Vec3& direction) {
   vertex.margin = hit.margin;
   vertex.normal = Dot(hit.normal, to_viewer) < 0.0 ? -1.0 * hit.normal : hit.normal;
   // An interpolated normal may be turned away from a viewer who sees the triangle.
-  Vec3 shading = Dot(hit.shading_normal, vertex.normal) < 0.0 ? -1.0 * hit.shading_normal
-                                                              : hit.shading_normal;
+  Vec3 shading =
+      Dot(hit.shading_normal, vertex.normal) < 0.0 ? -1.0 * hit.shading_normal : hit.shading_normal;
   if (!(Dot(shading, to_viewer) > 0.0)) shading = vertex.normal;
   vertex.frame = MakeFrame(shading, hit.tangent);
   vertex.wo = vertex.frame.ToLocal(to_viewer);
@@ -105,9 +105,8 @@ class TilePaths {
     for (bounce_ = 0; !active_.empty(); ++bounce_) {
       FindVertices();
       active_.clear();
-      std::stable_sort(vertices_.begin(), vertices_.end(), [](const Vertex& a, const Vertex& b) {
-        return a.material < b.material;
-      });
+      std::stable_sort(vertices_.begin(), vertices_.end(),
+                       [](const Vertex& a, const Vertex& b) { return a.material < b.material; });
       for (auto begin = vertices_.begin(); begin != vertices_.end();) {
         const auto end = std::find_if(begin, vertices_.end(), [&](const Vertex& vertex) {
           return vertex.material != begin->material;
@@ -140,15 +139,16 @@ class TilePaths {
       Hit hit;
       ++counts_->rays;
       if (!t_.geometry_.Intersect(path.ray, &hit)) {
-        AddEmission(t_.lights_.EnvironmentRadiance(direction),
-                    [&] { return t_.lights_.EnvironmentPdf(direction); }, &path);
+        AddEmission(
+            t_.lights_.EnvironmentRadiance(direction),
+            [&] { return t_.lights_.EnvironmentPdf(direction); }, &path);
       } else if (hit.light >= 0) {
-        AddEmission(t_.lights_.RectangleRadiance(hit.light, direction),
-                    [&] {
-                      return t_.lights_.RectanglePdf(hit.light, path.ray.origin, direction,
-                                                     hit.position);
-                    },
-                    &path);
+        AddEmission(
+            t_.lights_.RectangleRadiance(hit.light, direction),
+            [&] {
+              return t_.lights_.RectanglePdf(hit.light, path.ray.origin, direction, hit.position);
+            },
+            &path);
       } else if (bounce_ < t_.options_.max_bounces) {
         vertices_.push_back(MakeVertex(hit, i, direction));
       }

@@ -34,8 +34,8 @@ struct TileCounts {
 class PathTracer {
  public:
   // All must outlive this.
-  PathTracer(const Scene& scene, const Geometry& geometry, const std::vector<OpenMaterial>& materials,
-             const RenderOptions& options);
+  PathTracer(const Scene& scene, const Geometry& geometry,
+             const std::vector<OpenMaterial>& materials, const RenderOptions& options);
 
   // Adds the samples first, ..., first + count - 1 of each of the tile's pixels, to pixels, which are
   // those of the whole image. May be called for several tiles at once.

@@ -14,13 +14,22 @@ static_assert(std::endian::native == std::endian::little);
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
-constexpr NameTable<Type, 16> kTypes = {
-    {{"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
-     {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
-     {"ushort", Type::kUint16}, {"uint16", Type::kUint16}, {"int", Type::kInt32},
-     {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
-     {"float", Type::kFloat},   {"float32", Type::kFloat}, {"double", Type::kDouble},
-     {"float64", Type::kDouble}}};
+constexpr NameTable<Type, 16> kTypes = {{{"char", Type::kInt8},
+                                         {"int8", Type::kInt8},
+                                         {"uchar", Type::kUint8},
+                                         {"uint8", Type::kUint8},
+                                         {"short", Type::kInt16},
+                                         {"int16", Type::kInt16},
+                                         {"ushort", Type::kUint16},
+                                         {"uint16", Type::kUint16},
+                                         {"int", Type::kInt32},
+                                         {"int32", Type::kInt32},
+                                         {"uint", Type::kUint32},
+                                         {"uint32", Type::kUint32},
+                                         {"float", Type::kFloat},
+                                         {"float32", Type::kFloat},
+                                         {"double", Type::kDouble},
+                                         {"float64", Type::kDouble}}};
 
 struct Property {
   std::string name;
@@ -43,14 +52,22 @@ class Values {
   double Next(Type type) {
     if (is_text_) return ParseNumber("value", Word());
     switch (type) {
-      case Type::kInt8: return Take<std::int8_t>();
-      case Type::kUint8: return Take<std::uint8_t>();
-      case Type::kInt16: return Take<std::int16_t>();
-      case Type::kUint16: return Take<std::uint16_t>();
-      case Type::kInt32: return Take<std::int32_t>();
-      case Type::kUint32: return Take<std::uint32_t>();
-      case Type::kFloat: return Take<float>();
-      case Type::kDouble: return Take<double>();
+      case Type::kInt8:
+        return Take<std::int8_t>();
+      case Type::kUint8:
+        return Take<std::uint8_t>();
+      case Type::kInt16:
+        return Take<std::int16_t>();
+      case Type::kUint16:
+        return Take<std::uint16_t>();
+      case Type::kInt32:
+        return Take<std::int32_t>();
+      case Type::kUint32:
+        return Take<std::uint32_t>();
+      case Type::kFloat:
+        return Take<float>();
+      case Type::kDouble:
+        return Take<double>();
     }
     return 0.0;
   }

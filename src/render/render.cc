@@ -58,7 +58,8 @@ std::vector<Tile> TilesOf(const Film& film) {
   std::vector<Tile> tiles;
   for (int y = 0; y < film.height; y += kTileSize) {
     for (int x = 0; x < film.width; x += kTileSize) {
-      tiles.push_back({x, y, std::min(kTileSize, film.width - x), std::min(kTileSize, film.height - y)});
+      tiles.push_back(
+          {x, y, std::min(kTileSize, film.width - x), std::min(kTileSize, film.height - y)});
     }
   }
   return tiles;
@@ -80,13 +81,14 @@ class Renderer {
     for (int done = 0, count = 1; done < options_.samples_per_pixel && !stopped_; done += count) {
       if (done > 0) count = std::min(kSamplesAtOnce, options_.samples_per_pixel - done);
       arena->execute([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles_.size(), 1),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                              TraceTile(i, done, count);
-                            }
-                          },
-                          tbb::simple_partitioner());
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, tiles_.size(), 1),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+              for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                TraceTile(i, done, count);
+              }
+            },
+            tbb::simple_partitioner());
       });
     }
   }
@@ -164,8 +166,8 @@ Rendering Render(const Scene& scene, const MaterialOpener& open, const RenderOpt
   Renderer renderer(scene, tracer, options);
   renderer.Run(&arena);
   Rendering rendering = renderer.Result();
-  rendering.summary.materials_opened = static_cast<int>(
-      std::count_if(materials.begin(), materials.end(), [](const auto& m) { return bool(m.brdf); }));
+  rendering.summary.materials_opened = static_cast<int>(std::count_if(
+      materials.begin(), materials.end(), [](const auto& m) { return bool(m.brdf); }));
   return rendering;
 }
 

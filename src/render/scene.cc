@@ -98,8 +98,8 @@ MeshShape ReadRectangle(const JsonValue& json, const Affine& map) {
 SphereShape ReadSphere(const JsonValue& json, const Affine& map) {
   const double radius = json.At("radius").Positive();
   const Vec3 center = json.Has("center") ? json.At("center").Vector() : Vec3{};
-  const Affine sphere = Compose(map, Compose(Affine::Translation(center),
-                                             Affine::Scaling({radius, radius, radius})));
+  const Affine sphere =
+      Compose(map, Compose(Affine::Translation(center), Affine::Scaling({radius, radius, radius})));
   double extent = LargestCoordinate(sphere.origin);
   for (const Vec3& axis : sphere.axes) extent += LargestCoordinate(axis);
   if (!(extent <= kLargestCoordinate)) {
@@ -232,10 +232,9 @@ class SceneReader {
       const Affine map = ReadTransform(json);
       const MeshShape shape = ReadRectangle(json, map);
       About(json, [&] { CheckTriangles(shape.mesh); });
-      scene_.rectangle_lights.push_back({map.origin,
-                                         (json.At("width").Number() / 2.0) * map.axes[0],
-                                         (json.At("height").Number() / 2.0) * map.axes[1],
-                                         json.At("radiance").Color()});
+      scene_.rectangle_lights.push_back(
+          {map.origin, (json.At("width").Number() / 2.0) * map.axes[0],
+           (json.At("height").Number() / 2.0) * map.axes[1], json.At("radiance").Color()});
     }
   }
 

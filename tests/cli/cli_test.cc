@@ -10,7 +10,7 @@ namespace {
 TEST_F(Cli, HelpTeaches) {
   const Result overview = Run("--help");
   EXPECT_EQ(overview.status, 0);
-  for (const char* command : {"fit", "eval", "export", "tabulate", "values", "info"}) {
+  for (const char* command : {"fit", "eval", "export", "tabulate", "values", "info", "render"}) {
     EXPECT_THAT(overview.out, HasSubstr(StrCat("  ", command, " ")));
     const Result help = Run(StrCat(command, " --help"));
     EXPECT_EQ(help.status, 0);

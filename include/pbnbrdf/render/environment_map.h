@@ -42,7 +42,7 @@ class EnvironmentMap {
   Rgb RadianceOf(const Texel& texel) const;
   double Density(const Texel& texel) const;
 
-  Image radiance_;  // scaled
+  Image radiance_;   // scaled
   double rotation_;  // radians
   double total_ = 0.0;
   std::vector<double> cos_theta_;  // of the rows' edges, height + 1

@@ -13,7 +13,8 @@ namespace pbnbrdf {
 struct TriangleMesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  // one for each position, any length but 0; or none: flat triangles
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // into positions, counterclockwise from outside
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;  // into positions, counterclockwise from outside
 };
 
 // Wavefront OBJ: v, vn and f lines, faces of three corners or more (as fans), negative indices

@@ -76,7 +76,7 @@ struct Scene {
 
 // What the caller has other ideas about than the file.
 struct SceneChanges {
-  std::string environment;                  // an OpenEXR file; "": as the scene says
+  std::string environment;                     // an OpenEXR file; "": as the scene says
   std::map<std::string, std::string> sources;  // of materials, by name
 };
 

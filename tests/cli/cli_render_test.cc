@@ -1,0 +1,89 @@
+// pbnbrdf render, and the scenes that ship.
+#include "cli/cli_fixture.h"
+#include "pbnbrdf/image/exr.h"
+#include "pbnbrdf/image/png.h"
+
+namespace pbnbrdf {
+namespace {
+
+const std::string kScenes = std::string(PBNBRDF_PROBLEMS) + "/scenes/";
+
+class CliRender : public Cli {
+ protected:
+  // A shipped scene with few pixels.
+  std::string Small(const std::string& name) const {
+    json scene = json::parse(ReadFile(kScenes + name, 1 << 20));
+    scene["film"] = {{"width", 16}, {"height", 12}};
+    WriteBytes(Path(name), scene.dump());
+    return " --scene=" + Path(name) + " ";
+  }
+};
+
+TEST_F(CliRender, WritesTheImageAndHowItWasMade) {
+  const std::string render = "render" + Small("sphere.json") + "--samples_per_pixel=4 --seed=5 ";
+  const Result result = Run(render + "--out=" + Path("a.exr") + " --png=" + Path("a.png"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, HasSubstr("a.exr: 16 x 12 pixels, 768 samples, "));
+  const Image image = ReadExr(Path("a.exr"));
+  EXPECT_EQ(image.width, 16);
+  EXPECT_EQ(image.height, 12);
+  EXPECT_EQ(ReadPng(Path("a.png")).width, 16);
+  const std::string bytes = ReadFile(Path("a.exr"), 1 << 20);
+  for (const char* text : {"pbnbrdf:seed", "pbnbrdf:scene", "pbnbrdf:version", "pbnbrdf:samples",
+                           "pbnbrdf:max_bounces", "sphere.json"}) {
+    EXPECT_THAT(bytes, HasSubstr(text));
+  }
+  ASSERT_EQ(Run(render + "--threads=1 --quiet --out=" + Path("b.exr")).out, "");
+  EXPECT_EQ(image.rgb, ReadExr(Path("b.exr")).rgb);
+}
+
+TEST_F(CliRender, TakesAnotherEnvironmentAndOtherMaterials) {
+  Image map(4, 2);
+  map.rgb.assign(map.rgb.size(), 0.25f);
+  WriteExr(Path("map.exr"), map);
+  const Result result = Run("render" + Small("sphere.json") +
+                            "--samples_per_pixel=4 --environment=" + Path("map.exr") +
+                            " '--material=surface=ggx:f0=0,alpha=0.2' --out=" + Path("a.exr"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Image image = ReadExr(Path("a.exr"));
+  EXPECT_EQ(image.pixel(0, 0)[1], 0.25f);  // beside the sphere
+  EXPECT_LT(image.pixel(8, 6)[1], 0.05f);  // which is next to black
+}
+
+TEST_F(CliRender, ShippedScenesRender) {
+  for (const char* name : {"sphere.json", "furnace.json", "cove.json", "gallery.json"}) {
+    const Result result =
+        Run("render" + Small(name) + "--samples_per_pixel=2 --out=" + Path("a.exr"));
+    EXPECT_EQ(result.status, 0) << name << ": " << result.err;
+    float sum = 0.0f;
+    for (float value : ReadExr(Path("a.exr")).rgb) sum += value;
+    EXPECT_GT(sum, 0.0f) << name;
+  }
+}
+
+TEST_F(CliRender, Errors) {
+  const std::string render = "render" + Small("sphere.json"), out = " --out=" + Path("out");
+  ExpectError("render" + out, 2, "--scene is required");
+  ExpectError(render, 2, "--out is required");
+  ExpectError(render + "--samples_per_pixel=0" + out, 2,
+              "--samples_per_pixel = 0; must be 1 to 16777216");
+  ExpectError(render + "--max_bounces=-1" + out, 2, "--max_bounces = -1; must be 0 to 100000");
+  ExpectError(render + "--threads=-1" + out, 2, "--threads = -1; must be >= 0");
+  ExpectError(render + "--exposure=0" + out, 2, "--exposure = 0; must be finite and > 0");
+  ExpectError(render + "--estimator=mi" + out, 2,
+              "--estimator=mi is not one of mis | brdf | light");
+  ExpectError(render + "--material=surface" + out, 2, "of the form NAME=SOURCE");
+  ExpectError(render + "--material='surface=ggx:alpha=0.3;surface=x'" + out, 2, "is there twice");
+  ExpectError(render + "--png=" + Path("out") + out, 2, "is to be two outputs at once");
+  ExpectError(render + "--material=surfac=ggx:alpha=0.3" + out, 1,
+              "sphere.json: materials: there is no 'surfac'; did you mean 'surface'?");
+  ExpectError(render + "--material=surface=none.binary" + out, 1,
+              "sphere.json: materials.surface: none.binary: no such file");
+  ExpectError(render + "--environment=" + Path("none.exr") + out, 1, "none.exr: no such file");
+  ExpectError(render + "--png=" + Path("none/x.png") + out, 1, "cannot write: no folder");
+  ExpectError("render --scene=" + Path("none.json") + out, 1, "none.json: no such file");
+}
+
+}  // namespace
+}  // namespace pbnbrdf
