@@ -15,8 +15,8 @@ double Luminance(const float* rgb) {  // ITU-R BT.709
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 
-// The interval of running sums that u falls in, and where, in [0, 1): intervals of no length are never
-// chosen, nor is what rounding leaves beyond the last.
+// The interval of running sums that u falls in, and where, in [0, 1): intervals of no length are
+// never chosen, nor is what rounding leaves beyond the last.
 int Choose(const double* sums, int count, double u, double* within) {
   const double at = u * sums[count - 1];
   const auto i = static_cast<int>(std::upper_bound(sums, sums + count, at) - sums);

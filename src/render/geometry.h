@@ -1,7 +1,7 @@
 // geometry.h: what rays hit, by Embree 3 (https://www.embree.org).
 //
-// Embree computes in single precision. Where a ray hits is computed again here, from what is hit, so that
-// the point lies on it; spheres are intersected in double precision altogether.
+// Embree computes in single precision. Where a ray hits is computed again here, from what is hit,
+// so that the point lies on it; spheres are intersected in double precision altogether.
 #pragma once
 
 #include <memory>

@@ -130,7 +130,8 @@ class TilePaths {
   }
 
  private:
-  // Follows the rays of the active paths: adds the lights that they meet, keeps where they are reflected.
+  // Follows the rays of the active paths: adds the lights that they meet, keeps where they are
+  // reflected.
   void FindVertices() {
     vertices_.clear();
     for (const std::size_t i : active_) {

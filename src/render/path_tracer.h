@@ -37,8 +37,8 @@ class PathTracer {
   PathTracer(const Scene& scene, const Geometry& geometry,
              const std::vector<OpenMaterial>& materials, const RenderOptions& options);
 
-  // Adds the samples first, ..., first + count - 1 of each of the tile's pixels, to pixels, which are
-  // those of the whole image. May be called for several tiles at once.
+  // Adds the samples first, ..., first + count - 1 of each of the tile's pixels, to pixels, which
+  // are those of the whole image. May be called for several tiles at once.
   void Trace(const Tile& tile, int first, int count, std::span<PixelSum> pixels,
              TileCounts* counts) const;
 

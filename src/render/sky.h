@@ -6,8 +6,8 @@
 
 namespace pbnbrdf {
 
-// Radiance, W / (m^2 sr). Above the horizon it goes from `horizon` to `zenith` in proportion to y, the
-// cosine of the zenith angle; below it is `ground`. The sun is a disk.
+// Radiance, W / (m^2 sr). Above the horizon it goes from `horizon` to `zenith` in proportion to y,
+// the cosine of the zenith angle; below it is `ground`. The sun is a disk.
 struct Sky {
   Rgb zenith = {}, horizon = {}, ground = {}, sun = {};
   Vec3 sun_direction = {0.0, 1.0, 0.0};  // of unit length, towards the sun

@@ -56,7 +56,8 @@ TEST(EnvironmentMap, TurnsAboutTheUpAxis) {
   }
 }
 
-// On a fine grid of solid angles: the density integrates to 1, and the radiance over the density is as drawn.
+// On a fine grid of solid angles: the density integrates to 1, and the radiance over the density is
+// as drawn.
 TEST(EnvironmentMap, DensityIntegratesToOne) {
   const EnvironmentMap environment(RandomMap(8, 4, 3), 20.0, 1.5);
   constexpr int kTheta = 400, kPhi = 720;

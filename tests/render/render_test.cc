@@ -208,7 +208,8 @@ TEST(Render, EllipsoidsAndMeshesInAFurnace) {
       rendering.image, 0, [](int, int) { return 1.0; }, kExact);
 }
 
-// No surface can be brighter than what it reflects is at most: with albedos of at most 1 that is the light.
+// No surface can be brighter than what it reflects is at most: with albedos of at most 1 that is
+// the light.
 Scene Cove(const std::string& source, int pixels) {
   Scene scene = SceneFrom(3.4, 42.0, pixels);
   AddRectangle({0, -1, 0}, {1, 0, 0}, {0, 0, -1}, source, &scene);
@@ -259,7 +260,8 @@ TEST(Render, EnergyGainsExplodeInAClosedRoom) {
   EXPECT_NEAR(rendering.image.pixel(1, 1)[0], expected, 1e-4 * expected);
 }
 
-// An environment with a bright spot, a rectangle light and a point light, on glossy and matte things.
+// An environment with a bright spot, a rectangle light and a point light, on glossy and matte
+// things.
 Scene Still(int pixels) {
   Scene scene = SceneFrom(4.0, 35.0, pixels);
   AddSphere({-0.6, -0.4, 0.0}, 0.6, "builtin:satin-gold", &scene);

@@ -86,9 +86,9 @@ inline MeanAndError MeanOf(const std::vector<double>& values) {
   return {sum / n, std::sqrt(squares / (n - 1.0) / n)};
 }
 
-// Expects that image and expected, of one channel, differ by noise only: over each quarter of the pixels the
-// mean of the difference is 0 within 3 standard errors. What the expected means themselves are off by, relative
-// to the largest of them, is to be given.
+// Expects that image and expected, of one channel, differ by noise only: over each quarter of the
+// pixels the mean of the difference is 0 within 3 standard errors. What the expected means
+// themselves are off by, relative to the largest of them, is to be given.
 inline void ExpectNoiseOnly(const Image& image, int channel,
                             const std::function<double(int, int)>& expected,
                             double relative_error) {

@@ -21,22 +21,24 @@ struct TriangleMesh {
 // too; all else (texture coordinates, groups, materials) is left out. Normals are kept if every
 // corner of every face has one; a position with several of them is repeated.
 //
-// PLY, ascii or binary_little_endian: x, y, z and, where they all are, nx, ny, nz of "vertex", the list
-// vertex_indices or vertex_index of "face"; other elements and properties are skipped.
+// PLY, ascii or binary_little_endian: x, y, z and, where they all are, nx, ny, nz of "vertex", the
+// list vertex_indices or vertex_index of "face"; other elements and properties are skipped.
 //
-// Both throw Error, which names the file and, of a text, the line, if it is missing, truncated or of
-// another format, has no triangles, an index out of range, or a coordinate that isn't finite or is
-// beyond kLargestCoordinate, or a face without area. The file's first bytes say which format it is.
+// Both throw Error, which names the file and, of a text, the line, if it is missing, truncated or
+// of another format, has no triangles, an index out of range, or a coordinate that isn't finite or
+// is beyond kLargestCoordinate, or a face without area. The file's first bytes say which format it
+// is.
 TriangleMesh ReadMesh(const std::string& path);
 
 // Embree computes in single precision.
 inline constexpr double kLargestCoordinate = 1e15;
 
-// The mesh as the map places it; turned inside out by a reflection, the triangles change orientation,
-// so that their normals go where the map's do. Its determinant must not be 0.
+// The mesh as the map places it; turned inside out by a reflection, the triangles change
+// orientation, so that their normals go where the map's do. Its determinant must not be 0.
 TriangleMesh Transformed(const TriangleMesh& mesh, const Affine& map);
 
-// Throws Error "triangle N: ..." if a triangle has no area or a coordinate isn't finite or is too large.
+// Throws Error "triangle N: ..." if a triangle has no area or a coordinate isn't finite or is too
+// large.
 void CheckTriangles(const TriangleMesh& mesh);
 
 }  // namespace pbnbrdf

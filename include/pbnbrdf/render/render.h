@@ -3,11 +3,12 @@
 // Paths start at the camera and go where the materials reflect (brdf/importance_sampler.h); at each
 // reflection one light, chosen uniformly, is sampled too. What both find is combined by multiple
 // importance sampling with the power heuristic [1]. All paths of a tile take their next step
-// together, and reflectances are asked for by material, hundreds at once, as networks need it; light
-// that is below the horizon or doesn't arrive is never asked for. After a few reflections paths go on with
-// the probability of what they still carry (Russian roulette).
+// together, and reflectances are asked for by material, hundreds at once, as networks need it;
+// light that is below the horizon or doesn't arrive is never asked for. After a few reflections
+// paths go on with the probability of what they still carry (Russian roulette).
 //
-// [1] E. Veach. Robust Monte Carlo Methods for Light Transport Simulation. Thesis, 1997, section 9.2.
+// [1] E. Veach. Robust Monte Carlo Methods for Light Transport Simulation. Thesis, 1997, section
+// 9.2.
 #pragma once
 
 #include <cstdint>
@@ -65,8 +66,9 @@ struct Rendering {
 // Throws Error "RenderOptions::threads = -1; must be >= 0".
 void ValidateRender(const RenderOptions& options);
 
-// Opens the materials that shapes have, no others, and renders. Throws Error if an option is out of its
-// range or a material can't be opened ("materials.gold: ..."). The same arguments give the same bits.
+// Opens the materials that shapes have, no others, and renders. Throws Error if an option is out of
+// its range or a material can't be opened ("materials.gold: ..."). The same arguments give the same
+// bits.
 Rendering Render(const Scene& scene, const MaterialOpener& open, const RenderOptions& options = {});
 
 }  // namespace pbnbrdf

@@ -33,8 +33,8 @@ struct SphereShape {
   Affine to_world;  // of the unit sphere about the origin; it may become an ellipsoid
 };
 
-// tangent: the x axis of the materials' frame is this, projected on the surface; of a sphere, it points
-// to the east, about the sphere's own y axis.
+// tangent: the x axis of the materials' frame is this, projected on the surface; of a sphere, it
+// points to the east, about the sphere's own y axis.
 struct MeshShape {
   TriangleMesh mesh;  // placed
   Vec3 tangent = {1.0, 0.0, 0.0};
@@ -80,8 +80,8 @@ struct SceneChanges {
   std::map<std::string, std::string> sources;  // of materials, by name
 };
 
-// Throws Error "FILE: shapes[2].radius: must be > 0": the file and the place in it; of unknown keys with
-// the nearest that is known.
+// Throws Error "FILE: shapes[2].radius: must be > 0": the file and the place in it; of unknown keys
+// with the nearest that is known.
 Scene ReadScene(const std::string& path, const SceneChanges& changes = {});
 
 }  // namespace pbnbrdf
