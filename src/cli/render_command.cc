@@ -101,6 +101,7 @@ void CheckOutputs() {
   CheckWritable(FLAGS_out);
   if (FLAGS_png.empty()) return;
   CheckWritable(FLAGS_png);
+  if (FLAGS_out == "-") throw UsageError("--png: --out must be a file, too");
   if (FLAGS_png == FLAGS_out) throw UsageError(StrCat(FLAGS_out, ": is to be two outputs at once"));
 }
 

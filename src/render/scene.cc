@@ -15,6 +15,16 @@ namespace {
 constexpr std::uintmax_t kLargestFile = 64 << 20;
 constexpr int kMostPixelsAcross = 32768;
 
+// Runs what may find fault, and puts the place before the message.
+template <typename Function>
+auto About(const JsonValue& json, Function function) {
+  try {
+    return function();
+  } catch (const Error& error) {
+    json.Refuse(error.what());
+  }
+}
+
 Camera ReadCamera(const JsonValue& json) {
   json.CheckKeys({"origin", "target", "up", "field_of_view"});
   Camera camera;
@@ -278,16 +288,6 @@ class SceneReader {
 
   // Relative to the scene file's folder.
   std::string PathOf(const JsonValue& json) const { return folder_ / json.Text(); }
-
-  // Runs what may find fault, and puts the place before the message.
-  template <typename Function>
-  static auto About(const JsonValue& json, Function function) {
-    try {
-      return function();
-    } catch (const Error& error) {
-      json.Refuse(error.what());
-    }
-  }
 
   std::filesystem::path folder_;
   const SceneChanges& changes_;

@@ -43,12 +43,13 @@ TEST_P(EveryEstimator, AWhiteSphereInAWhiteFurnaceCantBeSeen) {
 // In a white furnace a convex body shows its directional albedo.
 TEST_P(EveryEstimator, AFurnaceShowsTheDirectionalAlbedo) {
   const Vec3 center = {0.0, 0.0, 0.0};
-  for (const char* source : {"builtin:rough-iron", "builtin:satin-gold", "builtin:blue-plastic"}) {
+  for (const char* source :
+       {"builtin:rough-iron", "builtin:satin-gold", "builtin:red-satin-plastic"}) {
     SCOPED_TRACE(source);
     Scene scene = SceneFrom(2.0, 16.0, 8);  // all of it sees the sphere, none of it from the side
     AddSphere(center, 0.5, source, &scene);
     scene.environment = EnvironmentMap::Constant({1.0, 1.0, 1.0});
-    const Rendering rendering = RenderTest(scene, Options(400));
+    const Rendering rendering = RenderTest(scene, Options(4000));
     const std::unique_ptr<Brdf> brdf = OpenTestMaterial(source);
     constexpr int kSteps = 64;
     std::vector<double> albedos;  // at equal steps of the cosine
@@ -144,7 +145,7 @@ TEST_P(EveryEstimator, RectangleLight) {
   // Out of the camera's sight, facing down.
   const RectangleLight light = {{1.2, 0.4, 1.0}, {0.0, 0.5, 0.0}, {0.3, 0.0, 0.1}, {2.0, 2.0, 2.0}};
   scene.rectangle_lights.push_back(light);
-  const Rendering rendering = RenderTest(scene, Options(600));
+  const Rendering rendering = RenderTest(scene, Options(2400));
   const std::vector<Vec3> corners = {
       light.center - light.x_axis - light.y_axis, light.center + light.x_axis - light.y_axis,
       light.center + light.x_axis + light.y_axis, light.center - light.x_axis + light.y_axis};

@@ -117,8 +117,9 @@ TEST_F(SceneFile, UnknownKeysAreNamedWithTheNearest) {
   EXPECT_EQ(Error("\"radius\"", "\"raduis\""),
             "shapes[0]: key \"raduis\" isn't known; did you mean \"radius\"?");
   EXPECT_EQ(Error("\"film\"", "\"flim\""), "key \"flim\" isn't known; did you mean \"film\"?");
-  EXPECT_EQ(Error("\"scale_to_albedo\"", "\"albedo\""),
-            "materials.gold: key \"albedo\" isn't known; did you mean \"scale_to_albedo\"?");
+  EXPECT_EQ(
+      Error("\"scale_to_albedo\"", "\"scale_to_albdo\""),
+      "materials.gold: key \"scale_to_albdo\" isn't known; did you mean \"scale_to_albedo\"?");
   EXPECT_EQ(Error("\"sphere\"", "\"spere\""),
             "shapes[0].type: 'spere' isn't known; did you mean 'sphere'?");
   EXPECT_EQ(Error("\"point\"", "\"pint\""),

@@ -45,7 +45,7 @@ struct RenderOptions {
   int max_bounces = 64;  // reflections between the camera and a light, 0 to 100,000; 0: lights only
   Estimator estimator = Estimator::kMis;
   // Called after each tile, by one thread at a time; false: stop, and keep the image so far.
-  std::function<bool(const RenderProgress&)> on_progress;
+  std::function<bool(const RenderProgress&)> on_progress = {};
 };
 
 struct RenderSummary {

@@ -76,8 +76,8 @@ struct Scene {
 
 // What the caller has other ideas about than the file.
 struct SceneChanges {
-  std::string environment;                     // an OpenEXR file; "": as the scene says
-  std::map<std::string, std::string> sources;  // of materials, by name
+  std::string environment = {};                     // an OpenEXR file; "": as the scene says
+  std::map<std::string, std::string> sources = {};  // of materials, by name
 };
 
 // Throws Error "FILE: shapes[2].radius: must be > 0": the file and the place in it; of unknown keys
