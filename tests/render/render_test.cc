@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "pbnbrdf/brdf/albedo.h"
+#include "pbnbrdf/brdf/importance_sampler.h"
 #include "pbnbrdf/brdf/scaled.h"
 #include "render/render_test_util.h"
 
@@ -38,6 +39,67 @@ TEST_P(EveryEstimator, AWhiteSphereInAWhiteFurnaceCantBeSeen) {
     ExpectNoiseOnly(
         rendering.image, c, [&](int, int) { return c + 1.0; }, kExact);
   }
+}
+
+TEST(Render, NormalsOfAMeshAreInterpolated) {
+  Scene scene = SceneFrom(3.0, 20.0, 8);
+  AddRectangle({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, "white:0.5", &scene);
+  const Vec3 left = Normalized({-0.5, 0.0, 1.0}), right = Normalized({0.7, 0.1, 1.0});
+  scene.shapes[0].mesh.mesh.normals = {3.0 * left, right, right, left};
+  const Vec3 to_light = Normalized({0.2, 0.1, 1.0}), from = scene.camera.origin;
+  scene.directional_lights.push_back({-to_light, {2.0, 2.0, 2.0}});
+  const Rendering rendering = RenderTest(scene, {.samples_per_pixel = 64});
+  ExpectNoiseOnly(
+      rendering.image, 0,
+      [&](int x, int y) {
+        return PixelMean(scene, x, y, [&](const Vec3& direction) {
+          const double at = 0.5 + 0.5 * (from.z / -direction.z) * direction.x;
+          const Vec3 normal = Normalized((1.0 - at) * left + at * right);
+          return 0.5 / kPi * 2.0 * Dot(normal, to_light);
+        });
+      },
+      kSmooth);
+}
+
+// Tells in which quadrant of the frame the light is.
+class QuadrantBrdf final : public PointwiseBrdf {
+ public:
+  bool IsIsotropic() const override { return false; }
+  std::string Description() const override { return "quadrants"; }
+
+ protected:
+  Rgb Value(const DirectionPair& pair) const override {
+    const double value = (pair.wi.x > 0.0 ? 0.1 : 0.2) + (pair.wi.y > 0.0 ? 0.0 : 0.04);
+    return {value, value, value};
+  }
+};
+
+TEST(Render, MaterialsAreTurnedAsTheirShapes) {
+  const Vec3 to_light = Normalized({0.3, 0.2, 1.0});
+  const auto value = [&](const Scene& scene) {
+    const auto open = [](const std::string&) { return std::make_unique<QuadrantBrdf>(); };
+    const Rendering rendering = Render(scene, open, {.samples_per_pixel = 1});
+    return rendering.image.pixel(1, 1)[0] / to_light.z;
+  };
+  Scene scene = SceneFrom(3.0, 1.0, 3);
+  scene.directional_lights.push_back({-to_light, {1.0, 1.0, 1.0}});
+  const auto rectangle = [&](const Vec3& x, const Vec3& y) {
+    scene.shapes.clear();
+    AddRectangle({0.0, 0.0, 0.0}, x, y, "quadrants", &scene);
+    return value(scene);
+  };
+  EXPECT_NEAR(rectangle({1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), 0.10, 1e-6);
+  EXPECT_NEAR(rectangle({0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}), 0.14, 1e-6);
+  EXPECT_NEAR(rectangle({-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}), 0.24, 1e-6);
+  EXPECT_NEAR(rectangle({0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}), 0.20, 1e-6);
+  // Seen from behind: x stays, and y, which makes the frame right-handed, turns.
+  EXPECT_NEAR(rectangle({-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), 0.24, 1e-6);
+  scene.shapes.clear();
+  AddSphere({0.0, 0.0, 0.0}, 1.0, "quadrants", &scene);
+  EXPECT_NEAR(value(scene), 0.10, 1e-3);  // the east, about +y, is to the right
+  Affine& map = scene.shapes[0].sphere->to_world;
+  map = Compose(Affine::Rotation({0.0, 0.0, 1.0}, 90.0), map);
+  EXPECT_NEAR(value(scene), 0.14, 1e-3);
 }
 
 // In a white furnace a convex body shows its directional albedo.
@@ -284,10 +346,10 @@ TEST(Render, EstimatorsDifferInNoiseOnly) {
     return RenderTest(scene, {.samples_per_pixel = samples, .seed = seed, .estimator = estimator})
         .image;
   };
-  const Image mis = render(Estimator::kMis, 1024, 1);
+  const Image mis = render(Estimator::kMis, 4096, 1);
   for (const Estimator estimator : {Estimator::kBrdf, Estimator::kLight}) {
     SCOPED_TRACE(NameOf(kEstimators, estimator));
-    const Image other = render(estimator, 1024, 2);
+    const Image other = render(estimator, 4096, 2);
     for (int c = 0; c < 3; ++c) {
       ExpectNoiseOnly(
           other, c, [&](int x, int y) { return mis.pixel(x, y)[c]; }, kExact);

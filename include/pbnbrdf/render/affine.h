@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pbnbrdf/brdf/direction.h"
 
@@ -16,7 +17,9 @@ inline Vec3 Normalized(const Vec3& a) { return (1.0 / Length(a)) * a; }
 inline bool IsFinite(const Vec3& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
+// The largest magnitude of the three; infinite if one isn't finite.
 inline double LargestCoordinate(const Vec3& a) {
+  if (!IsFinite(a)) return std::numeric_limits<double>::infinity();
   return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
 }
 
