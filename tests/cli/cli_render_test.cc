@@ -62,6 +62,35 @@ TEST_F(CliRender, ShippedScenesRender) {
   }
 }
 
+// No surface is brighter than its light if no albedo is above 1 (render_test.cc says why): a
+// network that is certified to conserve energy, in a box, over 64 reflections.
+TEST_F(CliRender, ACertifiedNetworkGainsNothingInTheCove) {
+  const Result fit = Run(
+      "fit --material=builtin:satin-gold --scale_to_albedo=0.99 --samples=500 --max_iterations=10 "
+      "--hidden=5 --terms=log,energy --out=" +
+      Path("a.safetensors") + " --summary=" + Path("a.json"));
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  ASSERT_LE(double(summary["max_directional_albedo"]), 1.0 + 1e-6);
+  ASSERT_GE(double(summary["max_directional_albedo"]), 0.8);
+  const Result render =
+      Run("render" + Small("cove.json") + "--samples_per_pixel=256 --max_bounces=64 " +
+          "--material=walls=" + Path("a.safetensors") + " --out=" + Path("a.exr"));
+  ASSERT_EQ(render.status, 0) << render.err;
+  const Image image = ReadExr(Path("a.exr"));
+  const double light = json::parse(ReadFile(Path("cove.json"), 1 << 20))["lights"][0]["radiance"];
+  for (int y = 0; y < image.height; ++y) {
+    double sum = 0.0, squares = 0.0;
+    for (int x = 0; x < image.width; ++x) {
+      const double value = image.pixel(x, y)[0];
+      sum += value / image.width;
+      squares += value * value / image.width;
+    }
+    EXPECT_LE(sum, light + 3.0 * std::sqrt((squares - sum * sum) / image.width)) << "row " << y;
+    EXPECT_GT(sum, 0.0);
+  }
+}
+
 TEST_F(CliRender, Errors) {
   const std::string render = "render" + Small("sphere.json"), out = " --out=" + Path("out");
   ExpectError("render" + out, 2, "--scene is required");
