@@ -11,6 +11,7 @@ Command TabulateCommand();
 Command ExportCommand();
 Command ValuesCommand();
 Command InfoCommand();
+Command CompareCommand();
 
 // How every command that reads a material explains --material.
 inline constexpr char kSourceNotes[] =

@@ -13,9 +13,9 @@
 namespace pbnbrdf::cli {
 namespace {
 
-std::array<Command, 6> Commands() {
-  return {FitCommand(),      EvalCommand(),   ExportCommand(),
-          TabulateCommand(), ValuesCommand(), InfoCommand()};
+std::array<Command, 7> Commands() {
+  return {FitCommand(),    EvalCommand(), ExportCommand(), TabulateCommand(),
+          ValuesCommand(), InfoCommand(), CompareCommand()};
 }
 
 std::string Overview() {
