@@ -40,7 +40,8 @@ nlohmann::ordered_json ToJson(const ImageErrors& errors) {
   nlohmann::ordered_json json;
   for (const Measure& measure : kMeasures) {
     const double value = errors.*measure.value;
-    json[measure.key] = std::isinf(value) ? nlohmann::ordered_json() : value;
+    json[measure.key] = value;
+    if (std::isinf(value)) json[measure.key] = nullptr;  // JSON has no infinity
   }
   return json;
 }
