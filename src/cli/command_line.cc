@@ -64,7 +64,7 @@ class Parser {
     }
   }
 
-  const std::string& argument() const { return argument_; }
+  const std::vector<std::string>& arguments() const { return arguments_; }
 
  private:
   bool IsKnown(const std::string& name) const {
@@ -78,10 +78,10 @@ class Parser {
   }
 
   void TakeArgument(const std::string& text) {
-    if (command_.argument.empty() || !argument_.empty()) {
+    if (arguments_.size() == command_.arguments.size()) {
       FailUsage("'", text, "' is not a flag; flags begin with --");
     }
-    argument_ = text;
+    arguments_.push_back(text);
   }
 
   void Set(const std::string& name, const std::string& value, int depth) {
@@ -116,18 +116,18 @@ class Parser {
 
   const Command& command_;
   const std::vector<std::string> flags_;
-  std::string argument_;
+  std::vector<std::string> arguments_;
 };
 
 }  // namespace
 
-std::string ParseFlags(const Command& command, const std::vector<std::string>& arguments) {
+std::vector<std::string> ParseFlags(const Command& command,
+                                    const std::vector<std::string>& arguments) {
   Parser parser(command);
   parser.Parse(arguments, 0);
-  if (!command.argument.empty() && parser.argument().empty()) {
-    FailUsage(command.argument, " is missing");
-  }
-  return parser.argument();
+  const std::size_t given = parser.arguments().size();
+  if (given < command.arguments.size()) FailUsage(command.arguments[given], " is missing");
+  return parser.arguments();
 }
 
 std::string HelpText(const Command& command) {

@@ -21,18 +21,19 @@ struct FlagGroup {
 
 struct Command {
   std::string name;
-  std::string summary;           // one line
-  std::string usage;             // examples, a line each
-  std::string notes;             // more lines for --help
-  std::vector<FlagGroup> flags;  // those of gflags' that belong to it
-  std::string argument;          // what a positional argument is; empty: there is none
-  int (*run)(const std::string& argument);
+  std::string summary;                 // one line
+  std::string usage;                   // examples, a line each
+  std::string notes;                   // more lines for --help
+  std::vector<FlagGroup> flags;        // those of gflags' that belong to it
+  std::vector<std::string> arguments;  // what the positional arguments are
+  int (*run)(const std::vector<std::string>& arguments);
 };
 
 // Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of
 // the same, # for comments; later settings replace earlier ones) into gflags' flags. Returns the
-// positional argument, or "". Throws UsageError.
-std::string ParseFlags(const Command& command, const std::vector<std::string>& arguments);
+// positional arguments, as many as the command has. Throws UsageError.
+std::vector<std::string> ParseFlags(const Command& command,
+                                    const std::vector<std::string>& arguments);
 
 std::string HelpText(const Command& command);
 

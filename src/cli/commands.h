@@ -12,6 +12,7 @@ Command ExportCommand();
 Command ValuesCommand();
 Command InfoCommand();
 Command RenderCommand();
+Command CompareCommand();
 
 // How every command that reads a material explains --material.
 inline constexpr char kSourceNotes[] =

@@ -10,7 +10,6 @@
 #include "report.h"
 #include "shared_flags.h"
 
-DEFINE_bool(json, false, "print one JSON object");
 DEFINE_uint64(eval_samples, 200000, "held-out samples");
 DEFINE_uint64(eval_seed, 1, "of the held-out samples");
 
@@ -35,7 +34,7 @@ Fitted OpenFit(const std::string& path) {
   return {std::move(network), parameters};
 }
 
-int RunEval(const std::string&) {
+int RunEval(const std::vector<std::string>&) {
   RequireFlag("fit", FLAGS_fit);
   CheckMaterialFlags();
   if (FLAGS_eval_samples < 1 || FLAGS_eval_samples > kMostSamples) {

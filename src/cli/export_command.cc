@@ -11,7 +11,7 @@ DEFINE_string(name, "", "of the functions of c and glsl, before _eval; as the fi
 namespace pbnbrdf::cli {
 namespace {
 
-int RunExport(const std::string&) {
+int RunExport(const std::vector<std::string>&) {
   RequireFlag("fit", FLAGS_fit);
   RequireFlag("format", FLAGS_format);
   RequireFlag("out", FLAGS_out);

@@ -134,7 +134,7 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
   return network.weights();
 }
 
-int RunFit(const std::string&) {
+int RunFit(const std::vector<std::string>&) {
   CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
   if (FitsModel()) return RunModelFit();

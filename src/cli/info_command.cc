@@ -62,7 +62,8 @@ void PrintMetadata(const std::map<std::string, std::string>& metadata) {
   }
 }
 
-int RunInfo(const std::string& source) {
+int RunInfo(const std::vector<std::string>& arguments) {
+  const std::string& source = arguments[0];
   if (source == "builtin:") {
     ListBuiltins();
     return 0;
@@ -93,7 +94,7 @@ Command InfoCommand() {
       "  pbnbrdf info builtin:          lists the materials that ship with the program\n"
       "  pbnbrdf info models:           lists the analytic models and their parameters\n";
   command.notes = kSourceNotes;
-  command.argument = "a file or another source";
+  command.arguments = {"a file or another source"};
   command.run = RunInfo;
   return command;
 }

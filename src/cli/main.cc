@@ -13,9 +13,9 @@
 namespace pbnbrdf::cli {
 namespace {
 
-std::array<Command, 7> Commands() {
-  return {FitCommand(),    EvalCommand(), ExportCommand(), TabulateCommand(),
-          ValuesCommand(), InfoCommand(), RenderCommand()};
+std::array<Command, 8> Commands() {
+  return {FitCommand(),    EvalCommand(), ExportCommand(),  TabulateCommand(),
+          ValuesCommand(), InfoCommand(), CompareCommand(), RenderCommand()};
 }
 
 std::string Overview() {

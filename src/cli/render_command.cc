@@ -111,7 +111,7 @@ void PrintSummary(const Image& image, const RenderSummary& summary) {
             << (summary.stopped ? "; stopped early" : "") << "\n";
 }
 
-int RunRender(const std::string&) {
+int RunRender(const std::vector<std::string>&) {
   RequireFlag("scene", FLAGS_scene);
   RequireFlag("out", FLAGS_out);
   RenderOptions options = ParseOptions();

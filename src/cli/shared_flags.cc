@@ -15,6 +15,7 @@ DEFINE_double(
 DEFINE_string(fit, "", 
               "fitted network (.safetensors, or an NBRDF: .h5, fc1.npy); eval: or analytic model (.json)");
 DEFINE_string(out, "", "file to write");
+DEFINE_bool(json, false, "print one JSON object");
 
 namespace pbnbrdf::cli {
 

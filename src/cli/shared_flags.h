@@ -13,6 +13,7 @@ DECLARE_string(material);
 DECLARE_double(scale_to_albedo);
 DECLARE_string(fit);
 DECLARE_string(out);
+DECLARE_bool(json);
 
 namespace pbnbrdf::cli {
 

@@ -9,7 +9,7 @@
 namespace pbnbrdf::cli {
 namespace {
 
-int RunTabulate(const std::string&) {
+int RunTabulate(const std::vector<std::string>&) {
   CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
   CheckWritable(FLAGS_out);

@@ -22,7 +22,7 @@ std::string ReadText(const std::string& path) {
   return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 
-int RunValues(const std::string&) {
+int RunValues(const std::vector<std::string>&) {
   CheckMaterialFlags();
   RequireFlag("directions", FLAGS_directions);
   RequireFlag("out", FLAGS_out);

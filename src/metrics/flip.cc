@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Sect. 4.1 of [1]. Luminance, red-green and blue-yellow, each as an own plane, scaled so that white's
+// Luminance, red-green and blue-yellow, each as an own plane, scaled so that white's
 // are 1, 0 and 0: the filters' weights have the sum 1, so that the published scales and offsets of
 // YCxCz cancel.
 using Opponents = std::array<Plane, 3>;
@@ -35,7 +35,7 @@ Opponents ToOpponents(const Image& image) {
   return planes;
 }
 
-// Table 1 of [1]: what people still resolve of an opponent channel, as a sum of Gaussians
+// What people still resolve of an opponent channel, as a sum of Gaussians
 // a sqrt(pi / b) exp(-pi^2 (x^2 + y^2) / b), x and y in degrees.
 struct Sensitivity {
   double a, b;
@@ -43,7 +43,7 @@ struct Sensitivity {
 constexpr Sensitivity kLuminance = {1.0, 0.0047}, kRedGreen = {1.0, 0.0053};
 constexpr Sensitivity kBlueYellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
 
-// Eq. 5's radius, that of the widest: three of its standard deviations.
+// In pixels: three standard deviations of the widest.
 int SensitivityRadius() {
   const double sigma = std::sqrt(kBlueYellow[0].b / (2.0 * kPi * kPi));
   return static_cast<int>(std::ceil(3.0 * sigma * kFlipPixelsPerDegree));
@@ -100,7 +100,7 @@ Lab SeenColor(const Opponents& planes, std::size_t i) {
 
 double HyAb(const Lab& x, const Lab& y) { return std::abs(x.l - y.l) + HueChromaDifference(x, y); }
 
-// Sect. 4.1.3 of [1]: to [0, 1], with kShare of it for the smaller, common differences.
+// To [0, 1], with kShare of it for the smaller, common differences.
 double ColorError(double distance, double largest) {
   constexpr double kExponent = 0.7, kKnee = 0.4, kShare = 0.95;
   const double most = std::pow(largest, kExponent), error = std::pow(distance, kExponent);
@@ -110,7 +110,7 @@ double ColorError(double distance, double largest) {
 }
 
 // The Gaussian's first or second derivative across, with its positive weights scaled to the sum 1
-// and its negative ones to the sum -1 (sect. 4.2 of [1]).
+// and its negative ones to the sum -1.
 Kernel DerivativeKernel(double sigma, int radius, int order) {
   Kernel kernel = GaussianKernel(sigma, radius);
   double positive = 0.0, negative = 0.0;
@@ -154,8 +154,8 @@ struct Seen {
   Plane edges, points;
 };
 
-// Eq. 1 of [2]: a Stephen Hill and Krzysztof Narkowicz fit of ACES,
-// (p0 x^2 + p1 x) / (q0 x^2 + q1 x + q2), with the 0.6 that brings it to the usual exposure.
+// (p0 x^2 + p1 x) / (q0 x^2 + q1 x + q2): K. Narkowicz. ACES Filmic Tone Mapping Curve. 2015. [2] takes
+// it at 0.6 x.
 constexpr double kP0 = 0.6 * 0.6 * 2.51, kP1 = 0.6 * 0.03;
 constexpr double kQ0 = 0.6 * 0.6 * 2.43, kQ1 = 0.6 * 0.59, kQ2 = 0.14;
 
@@ -196,7 +196,7 @@ std::vector<double> FlipMap(const Image& reference, const Image& test) {
           ColorError(HyAb(SeenColor(x.colors, i), SeenColor(y.colors, i)), largest);
       const double feature = FeatureError(x.edges.values[i] - y.edges.values[i],
                                           x.points.values[i] - y.points.values[i]);
-      map[i] = std::pow(color, 1.0 - feature);  // eq. 15 of [1]
+      map[i] = std::pow(color, std::max(1.0 - feature, 0.0));
     }
   });
   return map;

@@ -10,7 +10,8 @@ namespace {
 TEST_F(Cli, HelpTeaches) {
   const Result overview = Run("--help");
   EXPECT_EQ(overview.status, 0);
-  for (const char* command : {"fit", "eval", "export", "tabulate", "values", "info", "render"}) {
+  for (const char* command :
+       {"fit", "eval", "export", "tabulate", "values", "info", "compare", "render"}) {
     EXPECT_THAT(overview.out, HasSubstr(StrCat("  ", command, " ")));
     const Result help = Run(StrCat(command, " --help"));
     EXPECT_EQ(help.status, 0);
@@ -32,7 +33,7 @@ TEST_F(Cli, HelpNamesEveryChoice) {
 
 TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError("", 2, "no command given: fit | eval");
-  ExpectError("fitt", 2, "'fitt' is not a command: fit | eval | export | tabulate | values | info");
+  ExpectError("fitt", 2, "'fitt' is not a command: fit | eval | export | tabulate | values | info | compare");
   ExpectError("fit", 2, "--material is required");
   ExpectError("fit --material=builtin:satin-gold", 2, "--out is required");
   const std::string fit = "fit --material=builtin:satin-gold --out=" + Path("out");

@@ -56,6 +56,13 @@ void ExpectLab(const Rgb& linear, const Lab& expected, double tolerance) {
   EXPECT_NEAR(lab.b, expected.b, tolerance);
 }
 
+TEST(FromXyz, IsTheInverseOfToXyz) {
+  for (const Rgb& linear : {Rgb{1, 0, 0}, Rgb{0, 1, 0}, Rgb{0, 0, 1}, Rgb{0.3, 20.0, -0.7}}) {
+    const Rgb back = FromXyz(ToXyz(linear));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(back[c], linear[c], 1e-13);
+  }
+}
+
 TEST(ToXyz, PrimariesAndWhiteHaveTheirChromaticities) {
   const std::pair<Rgb, std::pair<double, double>> kCases[] = {{{1, 0, 0}, {0.64, 0.33}},
                                                               {{0, 1, 0}, {0.30, 0.60}},
