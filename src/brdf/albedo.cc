@@ -108,12 +108,13 @@ class RefinedAlbedo {
   // good already.
   bool Refine(const Vec3& wi, const Rgb& bound, Estimate* estimate) const {
     if (IsAccurate(*estimate) || !MayExceed(*estimate, bound)) return false;
-    if (!estimate->is_exact && estimate->error <= kRounding) {
+    const bool is_last = estimate->level == levels_.size();
+    if (!estimate->is_exact && estimate->level > 0 && (estimate->error <= kRounding || is_last)) {
       estimate->albedo = DirectionalAlbedo(brdf_, wi, levels_[estimate->level - 1]);
       estimate->is_exact = true;
       return true;
     }
-    if (estimate->level == levels_.size()) return false;
+    if (is_last) return false;
     const Brdf& brdf = estimate->is_exact ? brdf_ : *single_;
     const Rgb finer = DirectionalAlbedo(brdf, wi, levels_[estimate->level++]);
     estimate->error = LargestDifference(finer, estimate->albedo);
