@@ -81,7 +81,10 @@ EnergyConstraints::EnergyConstraints(const FitProblem& problem)
 
 double EnergyConstraints::Measure(const std::vector<double>& weights) {
   const FastNeuralBrdf network(NeuralBrdf(shape_, weights));
-  profile_ = AlbedoProfile(network, kRoundGrid);
+  if (weights != measured_) {
+    profile_ = AlbedoProfile(network, kRoundGrid);
+    measured_ = weights;
+  }
   // What the energy term's own quadrature has to be told.
   const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
