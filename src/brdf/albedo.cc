@@ -44,8 +44,6 @@ IncidentStratum StratumOf(const AlbedoGrid& grid, int k) {
   return {theta_i, 2.0 * kPi * std::sin(theta_i) * 2.0 * grid.last_angle * s / grid.angles};
 }
 
-double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
-
 // The vertex of a parabola through three neighbours.
 struct Vertex {
   double step;  // of theta_i, from the middle one
@@ -75,7 +73,8 @@ Rgb Difference(const Rgb& a, const Rgb& b) {
 
 // An albedo as far as it is known.
 struct Estimate {
-  Rgb albedo, error;      // the latter about
+  Rgb albedo;
+  Rgb error;              // about
   std::size_t level = 0;  // of refinement
   bool is_exact = true;   // else in single precision
 };
@@ -110,8 +109,8 @@ class RefinedAlbedo {
   bool Refine(const Vec3& wi, const Rgb& bound, Estimate* estimate) const {
     if (!IsWanted(*estimate, bound)) return false;
     const bool is_last = estimate->level == levels_.size();
-    const bool is_rounding = Largest(estimate->error) <= kRounding || is_last;
-    if (!estimate->is_exact && estimate->level > 0 && is_rounding) {
+    const bool is_rounding = Largest(estimate->error) <= kRounding;
+    if (!estimate->is_exact && estimate->level > 0 && (is_rounding || is_last)) {
       estimate->albedo = DirectionalAlbedo(brdf_, wi, levels_[estimate->level - 1]);
       estimate->is_exact = true;
       return true;
@@ -133,7 +132,7 @@ class RefinedAlbedo {
 
  private:
   static constexpr double kCoarseError = 0.01;  // relative, seen at networks with ripples
-  static constexpr double kRounding = 1e-5;     // of albedos in single precision, at most
+  static constexpr double kRounding = 1e-5;     // most that single precision may be off
   static constexpr double kMargin = 4.0;
 
   static double Error(const Estimate& estimate, int channel) {
