@@ -44,8 +44,6 @@ IncidentStratum StratumOf(const AlbedoGrid& grid, int k) {
   return {theta_i, 2.0 * kPi * std::sin(theta_i) * 2.0 * grid.last_angle * s / grid.angles};
 }
 
-double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
-
 // The vertex of a parabola through three neighbours.
 struct Vertex {
   double step;  // of theta_i, from the middle one
@@ -69,14 +67,14 @@ std::optional<Vertex> FindVertex(const IncidentAlbedo* middle, int channel) {
   return vertex;
 }
 
-double LargestDifference(const Rgb& a, const Rgb& b) {
-  return Largest({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+Rgb Difference(const Rgb& a, const Rgb& b) {
+  return {std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])};
 }
 
 // An albedo as far as it is known.
 struct Estimate {
   Rgb albedo;
-  double error;           // about
+  Rgb error;              // about
   std::size_t level = 0;  // of refinement
   bool is_exact = true;   // else in single precision
 };
@@ -97,26 +95,30 @@ class RefinedAlbedo {
 
   // By the first quadrature, which also tells whether single precision is good enough here.
   Estimate At(const Vec3& wi) const {
-    const Rgb albedo = DirectionalAlbedo(brdf_, wi, coarse_);
-    const bool needs_double =
-        !single_ ||
-        !(LargestDifference(DirectionalAlbedo(*single_, wi, coarse_), albedo) <= kRounding);
-    return {.albedo = albedo, .error = kCoarseError * Largest(albedo), .is_exact = needs_double};
+    Estimate estimate = {.albedo = DirectionalAlbedo(brdf_, wi, coarse_), .error = {}};
+    for (int c = 0; c < 3; ++c) estimate.error[c] = kCoarseError * estimate.albedo[c];
+    if (single_) {
+      const Rgb single = DirectionalAlbedo(*single_, wi, coarse_);
+      estimate.is_exact = !(Largest(Difference(single, estimate.albedo)) <= kRounding);
+    }
+    return estimate;
   }
 
   // One step, to the next quadrature or from single to double precision; false if the estimate is
   // good already.
   bool Refine(const Vec3& wi, const Rgb& bound, Estimate* estimate) const {
-    if (IsAccurate(*estimate) || !MayExceed(*estimate, bound)) return false;
-    if (!estimate->is_exact && estimate->error <= kRounding) {
+    if (!IsWanted(*estimate, bound)) return false;
+    const bool is_last = estimate->level == levels_.size();
+    const bool is_rounding = Largest(estimate->error) <= kRounding;
+    if (!estimate->is_exact && estimate->level > 0 && (is_rounding || is_last)) {
       estimate->albedo = DirectionalAlbedo(brdf_, wi, levels_[estimate->level - 1]);
       estimate->is_exact = true;
       return true;
     }
-    if (estimate->level == levels_.size()) return false;
+    if (is_last) return false;
     const Brdf& brdf = estimate->is_exact ? brdf_ : *single_;
     const Rgb finer = DirectionalAlbedo(brdf, wi, levels_[estimate->level++]);
-    estimate->error = LargestDifference(finer, estimate->albedo);
+    estimate->error = Difference(finer, estimate->albedo);
     estimate->albedo = finer;
     return true;
   }
@@ -124,31 +126,30 @@ class RefinedAlbedo {
   // Raises the bound to what an albedo is at least.
   static void Raise(const Estimate& estimate, Rgb* bound) {
     for (int c = 0; c < 3; ++c) {
-      (*bound)[c] = std::max((*bound)[c], estimate.albedo[c] - Margin(estimate));
+      (*bound)[c] = std::max((*bound)[c], estimate.albedo[c] - kMargin * Error(estimate, c));
     }
   }
 
  private:
   static constexpr double kCoarseError = 0.01;  // relative, seen at networks with ripples
-  static constexpr double kRounding = 1e-5;     // of albedos in single precision, at most
+  static constexpr double kRounding = 1e-5;     // most that single precision may be off
   static constexpr double kMargin = 4.0;
 
-  static double Error(const Estimate& estimate) {
-    return estimate.is_exact ? estimate.error : std::max(estimate.error, kRounding);
+  static double Error(const Estimate& estimate, int channel) {
+    const double error = estimate.error[channel];
+    return estimate.is_exact ? error : std::max(error, kRounding);
   }
 
-  static double Margin(const Estimate& estimate) { return kMargin * Error(estimate); }
-
-  bool IsAccurate(const Estimate& estimate) const {
-    const double excess = Largest(estimate.albedo) - 1.0;
-    return Error(estimate) <= std::max(grid_.tolerance, grid_.excess_tolerance * excess);
-  }
-
-  // Whether a channel may exceed the bound.
-  static bool MayExceed(const Estimate& estimate, const Rgb& bound) {
-    bool may = false;
-    for (int c = 0; c < 3; ++c) may |= !(estimate.albedo[c] + Margin(estimate) < bound[c]);
-    return may;
+  // Whether a channel that may exceed the bound isn't known well enough.
+  bool IsWanted(const Estimate& estimate, const Rgb& bound) const {
+    for (int c = 0; c < 3; ++c) {
+      const double albedo = estimate.albedo[c], error = Error(estimate, c);
+      const double excess = grid_.excess_tolerance * (albedo - 1.0);
+      const bool is_accurate = error <= std::max(grid_.tolerance, excess);
+      const bool may_exceed = !(albedo + kMargin * error < bound[c]);
+      if (may_exceed && !is_accurate) return true;
+    }
+    return false;
   }
 
   const Brdf& brdf_;

@@ -20,7 +20,7 @@ constexpr double kSameDirection = 0.02;  // radians at the normal, less towards 
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 constexpr double kLeastStep = 1e-7;      // of a correction
 constexpr int kMostCorrections = 50, kMostNewtonSteps = 50;
-constexpr double kRounding = 2e-6;  // of an albedo in single precision, at most
+constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
 
 const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
   return *std::max_element(profile.begin(), profile.end(),
@@ -28,8 +28,6 @@ const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int 
                              return a.albedo[channel] < b.albedo[channel];
                            });
 }
-
-double Largest(const Rgb& albedo) { return std::max({albedo[0], albedo[1], albedo[2]}); }
 
 // By how much log(1 + f) has to be lowered so that the channel's albedo, which has been measured
 // there, becomes the bound.
@@ -81,7 +79,10 @@ EnergyConstraints::EnergyConstraints(const FitProblem& problem)
 
 double EnergyConstraints::Measure(const std::vector<double>& weights) {
   const FastNeuralBrdf network(NeuralBrdf(shape_, weights));
-  profile_ = AlbedoProfile(network, kRoundGrid);
+  if (weights != measured_) {
+    profile_ = AlbedoProfile(network, kRoundGrid);
+    measured_ = weights;
+  }
   // What the energy term's own quadrature has to be told.
   const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {

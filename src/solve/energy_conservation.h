@@ -39,6 +39,7 @@ class EnergyConstraints {
   NetworkShape shape_;
   double solid_angle_;
   std::vector<EnergyStratum> strata_;
+  std::vector<double> measured_;  // weights, to which the profile belongs
   std::vector<IncidentAlbedo> profile_;
 };
 

@@ -175,29 +175,29 @@ TEST(AlbedoProfile, FindsTheMaximumBetweenItsAngles) {
   EXPECT_NEAR(solid_angle, 2.0 * kPi, 1e-3);
 }
 
-// A Lambertian of an albedo just below 1 whose single precision is off by a factor.
+// A Lambertian whose single precision is off by a factor.
 class RoundedBrdf final : public PointwiseBrdf {
  public:
-  static constexpr double kAlbedo = 0.99999;
-
-  explicit RoundedBrdf(double factor) : rounded_(factor * kAlbedo) {}
+  RoundedBrdf(double albedo, double factor) : albedo_(albedo), factor_(factor) {}
   std::unique_ptr<Brdf> SinglePrecision() const override {
-    return std::make_unique<LambertBrdf>(Rgb{0.5, rounded_, 0.5});
+    return std::make_unique<LambertBrdf>(Rgb{0.0, factor_ * albedo_, 0.0});
   }
   std::string Description() const override { return "rounded"; }
 
  protected:
-  Rgb Value(const DirectionPair&) const override { return {0.5 / kPi, kAlbedo / kPi, 0.5 / kPi}; }
+  Rgb Value(const DirectionPair&) const override { return {0.0, albedo_ / kPi, 0.0}; }
 
  private:
-  double rounded_;
+  double albedo_, factor_;
 };
 
 TEST(AlbedoProfile, SinglePrecisionDecidesNothingThatIsWithinItsRounding) {
-  const AlbedoGrid grid = {.angles = 10};
-  for (double factor : {0.0, 0.9, 1.0 - 5e-6, 1.0 + 5e-6, 1.2}) {
-    const Rgb largest = LargestAlbedos(AlbedoProfile(RoundedBrdf(factor), grid));
-    EXPECT_NEAR(largest[1], RoundedBrdf::kAlbedo, grid.tolerance) << factor;
+  for (double albedo : {0.99999, 1e-4}) {
+    const AlbedoGrid grid = {.angles = 10, .refine_above = albedo};
+    for (double factor : {0.0, 0.9, 1.0 - 5e-6, 1.0 + 5e-6, 1.2}) {
+      const Rgb largest = LargestAlbedos(AlbedoProfile(RoundedBrdf(albedo, factor), grid));
+      EXPECT_NEAR(largest[1], albedo, grid.tolerance) << factor;
+    }
   }
 }
 

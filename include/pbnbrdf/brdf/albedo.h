@@ -66,7 +66,7 @@ Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, int n_theta = 128, int n
 // x 32 nodes and then by AlbedoQuadrature::OnMerlRows with more and more, until two agree within a
 // tolerance, or it is below `refine_above`, or what the largest albedo of all is at least, by a wide
 // margin, four times their difference. Where single precision (Brdf::SinglePrecision) agrees with
-// double within 1e-5, it is left what it can decide.
+// double within 1e-5, it is used for all that this can't change.
 struct AlbedoGrid {
   int angles = 300;  // theta_i: dense towards the last
   double last_angle = 0.5 * std::numbers::pi;

@@ -26,6 +26,8 @@ inline Vec3 FromSpherical(double theta, double phi) {
 // Linear R, G, B.
 using Rgb = std::array<double, 3>;
 
+inline double Largest(const Rgb& rgb) { return std::max({rgb[0], rgb[1], rgb[2]}); }
+
 // wi points to the light, wo to the viewer; both of unit length.
 struct DirectionPair {
   Vec3 wi, wo;

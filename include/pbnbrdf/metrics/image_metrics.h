@@ -23,7 +23,7 @@ double DisplayExposure(const Image& reference);
 // sRGB(exposure * value), the product cut to [0, 1].
 Image DisplayImage(const Image& image, double exposure);
 
-// Root mean square and others over all pixels and channels: linear values.
+// Means over all pixels and channels of the linear values; rmse is the root of mse.
 struct LinearErrors {
   double mae = 0.0, mse = 0.0, rmse = 0.0;
 };
