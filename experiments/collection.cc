@@ -26,7 +26,7 @@ constexpr char kUsage[] =
     R"(collection: every material of a collection, fitted with the default set-up.
 
   collection --out_dir=results --jobs=2 --threads=1 merl/*.binary
-  collection --out_dir=results merl=merl_nbrdf/*.h5 nielsen=nielsen_nbrdf/*.h5
+  collection --out_dir=results merl_nbrdf/*.h5 nielsen_nbrdf/*.h5
 
 The arguments are sources, CLASS= in front of them if wanted. Each fit is a row of collection.csv as
 soon as it is done; collection.md has them from the least error to the largest, and their medians.

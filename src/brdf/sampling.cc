@@ -83,8 +83,8 @@ void Shuffle(std::vector<BrdfSample>* samples, std::mt19937_64* random) {
 
 }  // namespace
 
-SampleStream::SampleStream(const Brdf& brdf, SampleSet set, Sampling sampling, std::uint64_t seed)
-    : brdf_(brdf), set_(set), sampling_(sampling), random_(seed) {
+SampleStream::SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed)
+    : brdf_(brdf), set_(set), angles_(std::move(angles)), random_(seed) {
   const std::vector<BrdfSample> all = brdf.Measurements();
   if (all.empty()) return;
   measured_ = PartOf(all, set, brdf.IsIsotropic());
@@ -114,8 +114,14 @@ void SampleStream::AddInterpolated() {
 }
 
 DirectionPair SampleStream::DrawPair() {
+  if (angles_.asked && Uniform(random_) >= angles_.floor) {
+    std::array<double, 5> u;
+    for (double& x : u) x = Uniform(random_);
+    u[1] = UniformOf(set_, random_);
+    return FromAngles(angles_.asked->Draw(u));
+  }
   RusinkiewiczAngles angles;
-  angles.theta_h = DrawThetaH(sampling_, random_);
+  angles.theta_h = DrawThetaH(angles_.sampling, random_);
   angles.theta_d = 0.5 * kPi * UniformOf(set_, random_);
   angles.phi_d = 2.0 * kPi * Uniform(random_);
   if (!brdf_.IsIsotropic()) angles.phi_h = 2.0 * kPi * Uniform(random_);
@@ -153,10 +159,10 @@ void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* sample
   }
 }
 
-std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
+std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const SampleAngles& angles,
                                     std::size_t count, std::uint64_t seed) {
   std::vector<BrdfSample> samples;
-  SampleStream(brdf, set, sampling, seed).Draw(count, &samples);
+  SampleStream(brdf, set, angles, seed).Draw(count, &samples);
   return samples;
 }
 

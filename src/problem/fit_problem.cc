@@ -28,6 +28,14 @@ void CheckCount(const char* field, Integer value, Integer least, Integer most) {
 
 }  // namespace
 
+SampleAngles FitProblem::Angles() const {
+  SampleAngles angles = sampling;
+  if (!asked) return angles;
+  angles.asked = asked;
+  angles.floor = asked_floor;
+  return angles;
+}
+
 void FitProblem::Validate() const {
   Shape();
   CheckWeight("log_weight", log_weight);
@@ -46,6 +54,9 @@ void FitProblem::Validate() const {
   CheckCount("first_samples", first_samples, std::size_t{1}, kMostSamples);
   if (!(growth > 1.0) || !std::isfinite(growth))
     Fail("growth = ", growth, "; must be finite and > 1");
+  if (!(asked_floor >= 0.0 && asked_floor <= 1.0)) {
+    Fail("asked_floor = ", asked_floor, "; must be 0 to 1");
+  }
   CheckCount("energy_strata", energy_strata, 1, 1024);
   CheckCount("energy_azimuths", energy_azimuths, 1, 1024);
   CheckCount("energy_theta", energy_theta, 2, 1024);

@@ -47,9 +47,9 @@ class Fitter {
  public:
   Fitter(const Brdf& material, const FitProblem& problem, const FitOptions& options)
       : options_(options),
-        stream_(material, SampleSet::kTraining, problem.sampling, problem.seed),
+        stream_(material, SampleSet::kTraining, problem.Angles(), problem.seed),
         most_samples_(std::min(problem.samples, stream_.most())),
-        validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.sampling,
+        validation_samples_(DrawSamples(material, SampleSet::kTraining, problem.Angles(),
                                         kValidationSamples, problem.seed + kValidationSeed)),
         curvature_samples_(options.curvature_samples),
         strata_(EqualStrata(problem)) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "pbnbrdf/base/names.h"
+#include "pbnbrdf/brdf/angle_distribution.h"
 #include "pbnbrdf/brdf/brdf.h"
 
 namespace pbnbrdf {
@@ -20,11 +22,21 @@ enum class Sampling {
 inline constexpr NameTable<Sampling, 2> kSamplings = {
     {{"uniform", Sampling::kUniform}, {"highlight", Sampling::kHighlight}}};
 
+// Where samples are: as `sampling` says or, all but a part of `floor`, where a scene asks.
+struct SampleAngles {
+  SampleAngles(Sampling all) : sampling(all) {}  // NOLINT: the usual case
+
+  Sampling sampling;
+  std::shared_ptr<const AngleDistribution> asked = nullptr;
+  double floor = 1.0;  // in [0, 1]
+};
+
 // The two sets draw theta_d from disjoint grids: they have no sample in common, whatever the seeds.
 enum class SampleSet { kTraining, kHeldOut };
 
 // Samples at which a Brdf is known, one after the other: the same arguments give the same ones,
-// however many at a time.
+// however many at a time. Angles that are asked for belong to materials of their kind, isotropic or
+// not, and matter only to a Brdf that isn't a list of measurements.
 //
 // Of a Brdf that is a list of measurements these are the samples, in a random order. One in 8 is held
 // out, whatever the seed, together with those at the same place (scattered.h): repeated, reciprocal
@@ -36,7 +48,7 @@ enum class SampleSet { kTraining, kHeldOut };
 class SampleStream {
  public:
   // brdf must outlive this.
-  SampleStream(const Brdf& brdf, SampleSet set, Sampling sampling, std::uint64_t seed);
+  SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed);
 
   // Appends the next `count` samples, fewer if there are no more. Throws Error if next to no angles
   // are known (fewer than 1 in 10,000).
@@ -52,14 +64,14 @@ class SampleStream {
 
   const Brdf& brdf_;
   SampleSet set_;
-  Sampling sampling_;
+  SampleAngles angles_;
   std::mt19937_64 random_;
   std::vector<BrdfSample> measured_;  // of the set, and interpolated ones, shuffled
   std::size_t next_ = 0;              // of them
 };
 
 // The first `count` samples of a SampleStream, or all if there are fewer.
-std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, Sampling sampling,
+std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const SampleAngles& angles,
                                     std::size_t count, std::uint64_t seed);
 
 }  // namespace pbnbrdf

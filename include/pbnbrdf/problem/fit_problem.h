@@ -75,7 +75,11 @@ struct FitProblem {
 
   // The training samples. A fit starts on the first few of them and takes `growth` times as many
   // each time that the cost falls slowly, up to all.
+  // `asked`, if not null, says where a scene asks for the material: all but a part of `asked_floor`
+  // come from there.
   Sampling sampling = Sampling::kHighlight;
+  std::shared_ptr<const AngleDistribution> asked;
+  double asked_floor = 0.2;  // in [0, 1]
   std::size_t samples = 60000;
   std::size_t first_samples = 1000;
   double growth = 3.0;     // > 1
@@ -91,6 +95,7 @@ struct FitProblem {
 
   Precision precision = Precision::kSingle;
 
+  SampleAngles Angles() const;
   NetworkShape Shape() const { return NetworkShape(encoding, hidden, activation, channels); }
 
   // Throws Error, naming the field, its value and what it must be.
