@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "pbnbrdf/base/files.h"
@@ -14,11 +15,13 @@
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/render.h"
+#include "render_summary.h"
 #include "shared_flags.h"
 
 DECLARE_uint64(seed);
 DECLARE_int32(threads);
 DECLARE_bool(quiet);
+DECLARE_string(summary);
 DEFINE_string(scene, "", "scene file (JSON); problems/scenes/README.md describes it");
 DEFINE_string(environment, "",
               "OpenEXR file, latitude-longitude, in place of the scene's environment light");
@@ -29,6 +32,11 @@ DEFINE_int32(max_bounces, 64, "reflections between camera and light, at most");
 DEFINE_string(estimator, "mis",
               "where the light at a reflection is looked for: brdf (where the material reflects), "
               "light, or mis (both); the images differ in noise only");
+DEFINE_double(
+    target_error, 0.0,
+    "stop sampling pixels whose standard error is below this times (mean + 0.01); 0: never");
+DEFINE_bool(no_skip, false,
+            "do all that the image doesn't depend on, too, to compare with: the same image");
 
 namespace pbnbrdf::cli {
 namespace {
@@ -64,6 +72,8 @@ RenderOptions ParseOptions() try {
   options.threads = FLAGS_threads;
   options.max_bounces = FLAGS_max_bounces;
   options.estimator = ParseName(kEstimators, "--estimator", FLAGS_estimator);
+  options.target_error = FLAGS_target_error;
+  options.skip = !FLAGS_no_skip;
   ValidateRender(options);
   if (!(FLAGS_exposure > 0.0) || !std::isfinite(FLAGS_exposure)) {
     Fail("--exposure = ", FLAGS_exposure, "; must be finite and > 0");
@@ -82,8 +92,8 @@ std::map<std::string, std::string> Metadata(const RenderSummary& summary) {
                                                  {"pbnbrdf:seed", StrCat(FLAGS_seed)},
                                                  {"pbnbrdf:samples", StrCat(summary.samples)}};
   metadata["pbnbrdf:stopped"] = summary.stopped ? "true" : "false";
-  for (const std::string& line :
-       FlagLines({"environment", "material", "samples_per_pixel", "max_bounces", "estimator"})) {
+  for (const std::string& line : FlagLines({"environment", "material", "samples_per_pixel",
+                                            "max_bounces", "estimator", "target_error"})) {
     const std::size_t equals = line.find('=');
     metadata["pbnbrdf:" + line.substr(2, equals - 2)] = line.substr(equals + 1);
   }
@@ -94,21 +104,33 @@ void WriteImages(const Rendering& rendering) {
   std::vector<FileContent> files = {
       {FLAGS_out, ExrBytes(rendering.image, Metadata(rendering.summary))}};
   if (!FLAGS_png.empty()) files.push_back({FLAGS_png, PngBytes(rendering.image, FLAGS_exposure)});
+  if (!FLAGS_summary.empty()) {
+    files.push_back({FLAGS_summary, ToJson(rendering.summary).dump(2) + "\n"});
+  }
   WriteFiles(files);
 }
 
+// --out and the flags of the files that are written beside it.
 void CheckOutputs() {
   CheckWritable(FLAGS_out);
-  if (FLAGS_png.empty()) return;
-  CheckWritable(FLAGS_png);
-  if (FLAGS_out == "-") throw UsageError("--png: --out must be a file, too");
-  if (FLAGS_png == FLAGS_out) throw UsageError(StrCat(FLAGS_out, ": is to be two outputs at once"));
+  std::vector<std::string> names = {FLAGS_out};
+  for (const auto& [flag, name] :
+       {std::pair("png", FLAGS_png), std::pair("summary", FLAGS_summary)}) {
+    if (name.empty()) continue;
+    CheckWritable(name);
+    if (FLAGS_out == "-") throw UsageError(StrCat("--", flag, ": --out must be a file, too"));
+    if (std::count(names.begin(), names.end(), name) > 0) {
+      throw UsageError(StrCat(name, ": is to be two outputs at once"));
+    }
+    names.push_back(name);
+  }
 }
 
 void PrintSummary(const Image& image, const RenderSummary& summary) {
   std::cout << FLAGS_out << ": " << image.width << " x " << image.height << " pixels, "
             << summary.samples << " samples, " << summary.seconds << " s"
-            << (summary.stopped ? "; stopped early" : "") << "\n";
+            << (summary.stopped ? "; stopped early" : "") << "\n"
+            << WorkText(summary.work);
 }
 
 int RunRender(const std::vector<std::string>&) {
@@ -131,7 +153,9 @@ int RunRender(const std::vector<std::string>&) {
   };
   const Rendering rendering = [&] {
     try {
-      return Render(scene, OpenBrdf, options);
+      return Render(
+          scene, [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; },
+          options);
     } catch (const Error& error) {
       Fail(FLAGS_scene, ": ", error.what());
     }
@@ -156,11 +180,27 @@ Command RenderCommand() {
   command.usage =
       "  pbnbrdf render --scene=problems/scenes/sphere.json --out=sphere.exr --png=sphere.png\n"
       "  pbnbrdf render --scene=problems/scenes/sphere.json --environment=studio.exr \\\n"
-      "                 --material=surface=gold.safetensors --out=gold.exr\n";
+      "                 --material=surface=gold.safetensors --out=gold.exr\n"
+      "  pbnbrdf render --scene=problems/scenes/gallery.json --samples_per_pixel=4096 \\\n"
+      "                 --target_error=0.02 --out=gallery.exr --summary=gallery.json\n";
   command.notes =
       "--material=NAME=SOURCE gives the scene's material NAME another source, several with ; in\n"
       "between. Files that a scene names are in its folder; sources of materials may be, too.\n"
-      "Materials that no shape has aren't opened.\n"
+      "\nWhat the image doesn't depend on is left out: materials that no path gets to aren't "
+      "opened,\n"
+      "parts of the image without shapes trace no rays, and materials aren't asked for directions\n"
+      "below the horizon, hidden lights, or paths that lead to no light. The lines printed in the "
+      "end\n"
+      "and --summary=FILE.json (the same as numbers) count what was done, what was skipped and "
+      "why, "
+      "and\n"
+      "estimate the time saved: skipped ones times the mean time of one that was done. --no_skip "
+      "does\n"
+      "it all: the same bits, later, and an error if any material can't be opened.\n"
+      "\n--target_error=E gives pixels no more samples once each of a block of 4 x 4 has at least "
+      "32 and\n"
+      "a standard error of the mean luminance below E (mean + 0.01), looked at every 16 samples;\n"
+      "--samples_per_pixel is the most that a pixel gets.\n"
       "\nThe OpenEXR file holds linear radiance, RGB as float, and says in its header how it was "
       "made.\n"
       "The image depends on the seed, not on the number of threads. Ctrl-C stops after the tile "
@@ -168,8 +208,9 @@ Command RenderCommand() {
       "keeps the image so far.\n\n" +
       std::string(kSourceNotes);
   command.flags = {{"",
-                    {"scene", "environment", "material", "out", "png", "exposure",
-                     "samples_per_pixel", "seed", "max_bounces", "estimator", "threads", "quiet"}}};
+                    {"scene", "environment", "material", "out", "png", "exposure", "summary",
+                     "samples_per_pixel", "target_error", "seed", "max_bounces", "estimator",
+                     "no_skip", "threads", "quiet"}}};
   command.run = RunRender;
   return command;
 }

@@ -10,9 +10,6 @@
 namespace pbnbrdf {
 namespace {
 
-// Of what Embree is off by, relative to the coordinates: a few roundings of float.
-constexpr double kRelativeMargin = 1e-6;
-
 struct Sphere {
   Affine to_world, to_unit;
   int material;
@@ -44,7 +41,7 @@ RTCBounds SphereBounds(const Sphere& sphere) {
   const Vec3 reach = {std::hypot(u.x, v.x, w.x), std::hypot(u.y, v.y, w.y),
                       std::hypot(u.z, v.z, w.z)};
   const Vec3& o = sphere.to_world.origin;
-  const double slack = kRelativeMargin * (LargestCoordinate(o) + LargestCoordinate(reach));
+  const double slack = kSinglePrecision * (LargestCoordinate(o) + LargestCoordinate(reach));
   RTCBounds bounds = {};
   bounds.lower_x = static_cast<float>(o.x - reach.x - slack);
   bounds.lower_y = static_cast<float>(o.y - reach.y - slack);
@@ -176,7 +173,7 @@ struct Geometry::Embree {
     hit->tangent = sphere.to_world.Vector({n.z, 0.0, -n.x});
     double extent = LargestCoordinate(sphere.to_world.origin);
     for (const Vec3& axis : sphere.to_world.axes) extent += LargestCoordinate(axis);
-    hit->margin = kRelativeMargin * extent;
+    hit->margin = kSinglePrecision * extent;
   }
 
   void HitMesh(const Mesh& shape, unsigned triangle, double u, double v, Hit* hit) const {
@@ -188,7 +185,7 @@ struct Geometry::Embree {
     hit->position = (1.0 - u - v) * a + u * b + v * c;
     hit->normal = hit->shading_normal = Normalized(Cross(b - a, c - a));
     hit->tangent = shape.tangent;
-    hit->margin = kRelativeMargin *
+    hit->margin = kSinglePrecision *
                   std::max({LargestCoordinate(a), LargestCoordinate(b), LargestCoordinate(c)});
     if (shape.mesh.normals.empty()) return;
     const auto& normals = shape.mesh.normals;

@@ -10,6 +10,10 @@
 
 namespace pbnbrdf {
 
+// What Embree is off by, relative to the coordinates, and directions in radians: a few roundings of
+// float.
+inline constexpr double kSinglePrecision = 1e-6;
+
 struct Ray {
   Vec3 origin, direction;  // of unit length
 };

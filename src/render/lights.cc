@@ -81,7 +81,11 @@ bool Lights::SampleRectangle(const RectangleLight& light, const Vec3& position, 
   sample->direction = (1.0 / distance) * to_light;
   sample->distance = kShorter * distance;
   const double facing = -4.0 * Dot(AreaNormal(light), sample->direction);  // area times cosine
-  if (!(facing > 0.0)) return false;
+  if (!(facing > 0.0)) {
+    sample->pdf = 0.0;
+    sample->weight = {};
+    return true;
+  }
   sample->pdf = squared / (facing * static_cast<double>(choices_.size()));
   sample->weight = Scaled(light.radiance, 1.0 / sample->pdf);
   return true;

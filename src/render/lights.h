@@ -18,7 +18,8 @@ class Lights {
   // The scene must outlive this.
   Lights(const Scene& scene, Estimator estimator);
 
-  // A light at random and a direction to it; false if there is none, or nothing comes from there.
+  // A light at random and a direction to it, of weight 0 if nothing comes from there; false if there
+  // is no light, or it is at the very position.
   bool Sample(const Vec3& position, Random* random, LightSample* sample) const;
 
   // What comes from a direction in which nothing is, and the density that Sample has for it.

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "random.h"
+#include "stopwatch.h"
+#include "vertex.h"
 
 namespace pbnbrdf {
 namespace {
@@ -13,60 +16,36 @@ constexpr int kSureBounces = 4;
 
 struct Path {
   Random random;
-  Ray ray;
   Rgb throughput = {1.0, 1.0, 1.0};
   Rgb radiance = {};
-  double pdf = 0.0;  // with which the material chose the ray's direction
   std::size_t pixel = 0;
 };
 
-// A right-handed orthonormal frame; z is the normal.
-struct Frame {
-  Vec3 x, y, z;
+// What is at the end of a ray.
+struct Arrival {
+  enum class Kind { kNothing, kLight, kSurface };
 
-  Vec3 ToLocal(const Vec3& v) const { return {Dot(v, x), Dot(v, y), Dot(v, z)}; }
-  Vec3 ToWorld(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
+  Kind kind = Kind::kNothing;  // also where the path would end without a contribution
+  Rgb radiance = {};           // of the light
+  double weight = 1.0;         // of its having been met rather than sampled
+  Hit hit;                     // on the surface
 };
 
-// Where a path is reflected. The normals are on the viewer's side.
-struct Vertex {
-  std::size_t path;
-  int material;
-  Vec3 position, normal;
-  Frame frame;  // about the shading normal
-  Vec3 wo;      // to the viewer, in the frame
-  double margin;
-
-  // The start of a ray that leaves on the viewer's side.
-  Ray RayTo(const Vec3& direction) const { return {position + margin * normal, direction}; }
+// Light that was sampled at a vertex, and what of it arrives.
+struct Lit {
+  std::size_t vertex;
+  DirectionPair pair;
+  LightSample light;
 };
 
-Frame MakeFrame(const Vec3& normal, const Vec3& tangent) {
-  Vec3 x = tangent - Dot(tangent, normal) * normal;
-  if (!(Length(x) > 1e-6 * Length(tangent))) {  // along the normal: any other will do
-    const Vec3 other = std::abs(normal.x) < 0.5 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0};
-    x = other - Dot(other, normal) * normal;
-  }
-  x = Normalized(x);
-  return {x, Cross(normal, x), normal};
-}
-
-Vertex MakeVertex(const Hit& hit, std::size_t path, const Vec3& direction) {
-  const Vec3 to_viewer = -1.0 * direction;
-  Vertex vertex;
-  vertex.path = path;
-  vertex.material = hit.material;
-  vertex.position = hit.position;
-  vertex.margin = hit.margin;
-  vertex.normal = Dot(hit.normal, to_viewer) < 0.0 ? -1.0 * hit.normal : hit.normal;
-  // An interpolated normal may be turned away from a viewer who sees the triangle.
-  Vec3 shading =
-      Dot(hit.shading_normal, vertex.normal) < 0.0 ? -1.0 * hit.shading_normal : hit.shading_normal;
-  if (!(Dot(shading, to_viewer) > 0.0)) shading = vertex.normal;
-  vertex.frame = MakeFrame(shading, hit.tangent);
-  vertex.wo = vertex.frame.ToLocal(to_viewer);
-  return vertex;
-}
+// A direction that the material chose at a vertex, and what is there.
+struct Onward {
+  std::size_t vertex;
+  DirectionPair pair;
+  double pdf;
+  Ray ray = {};
+  Arrival arrival = {};
+};
 
 // The weight of one of two techniques by the power heuristic, exponent 2.
 double PowerHeuristic(double pdf, double other) {
@@ -83,30 +62,35 @@ bool IsFinite(const Rgb& color) {
 // The paths of one call of Trace.
 class TilePaths {
  public:
-  TilePaths(const PathTracer& tracer, TileCounts* counts) : t_(tracer), counts_(counts) {}
+  TilePaths(const PathTracer& tracer, TileCounts* counts)
+      : t_(tracer), counts_(*counts), work_(counts->work) {}
 
-  void Start(const Tile& tile, int first, int count) {
+  void Start(const SampleRange& range) {
     const int image_width = t_.scene_.film.width;
-    for (int y = tile.y; y < tile.y + tile.height; ++y) {
-      for (int x = tile.x; x < tile.x + tile.width; ++x) {
-        for (int sample = first; sample < first + count; ++sample) {
-          Path path;
-          path.pixel = std::size_t(y) * std::size_t(image_width) + std::size_t(x);
-          path.random = Random(t_.options_.seed, path.pixel, std::uint64_t(sample));
-          path.ray = t_.CameraRay(x, y, &path.random);
-          active_.push_back(paths_.size());
-          paths_.push_back(path);
+    for (const PixelBlock& block : range.blocks) {
+      for (int y = block.y; y < block.y + block.height; ++y) {
+        for (int x = block.x; x < block.x + block.width; ++x) {
+          const std::size_t pixel = std::size_t(y) * std::size_t(image_width) + std::size_t(x);
+          for (int sample = range.first; sample < range.first + range.count; ++sample) {
+            Path path;
+            path.pixel = pixel;
+            path.random = Random(t_.options_.seed, pixel, std::uint64_t(sample));
+            const auto [dx, dy] = path.random.Pair();
+            camera_rays_.push_back(t_.camera_.RayThrough(x + dx, y + dy));
+            paths_.push_back(path);
+          }
         }
       }
     }
+    FollowCameraRays(range.empty);
   }
 
   void Follow() {
-    for (bounce_ = 0; !active_.empty(); ++bounce_) {
-      FindVertices();
-      active_.clear();
+    for (bounce_ = 0; !vertices_.empty(); ++bounce_) {
+      CountLanes(vertices_.size());
       std::stable_sort(vertices_.begin(), vertices_.end(),
                        [](const Vertex& a, const Vertex& b) { return a.material < b.material; });
+      next_.clear();
       for (auto begin = vertices_.begin(); begin != vertices_.end();) {
         const auto end = std::find_if(begin, vertices_.end(), [&](const Vertex& vertex) {
           return vertex.material != begin->material;
@@ -114,93 +98,137 @@ class TilePaths {
         Shade({begin, end});
         begin = end;
       }
+      vertices_.swap(next_);
     }
   }
 
-  void Deposit(std::span<PixelSum> pixels) const {
+  void Deposit(std::span<PixelSum> pixels) {
     for (const Path& path : paths_) {
-      if (!IsFinite(path.radiance)) {
-        ++counts_->dropped_samples;
-        continue;
+      if (IsFinite(path.radiance)) {
+        pixels[path.pixel].Add(path.radiance);
+      } else {
+        ++counts_.dropped_samples;
       }
-      PixelSum& pixel = pixels[path.pixel];
-      for (int c = 0; c < 3; ++c) pixel.radiance[c] += path.radiance[c];
-      ++pixel.samples;
     }
+    CountDone(paths_.size(), &work_.samples);
   }
+
+  double seconds_opening() const { return seconds_opening_; }
 
  private:
-  // Follows the rays of the active paths: adds the lights that they meet, keeps where they are
+  // Of paths that haven't been reflected yet: adds the lights that they meet, keeps where they are
   // reflected.
-  void FindVertices() {
-    vertices_.clear();
-    for (const std::size_t i : active_) {
-      Path& path = paths_[i];
-      const Vec3& direction = path.ray.direction;
+  void FollowCameraRays(bool empty) {
+    const bool skip = empty && t_.options_.skip;
+    const Stopwatch stopwatch(&work_.rays.seconds);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const Ray& ray = camera_rays_[i];
       Hit hit;
-      ++counts_->rays;
-      if (!t_.geometry_.Intersect(path.ray, &hit)) {
-        AddEmission(
-            t_.lights_.EnvironmentRadiance(direction),
-            [&] { return t_.lights_.EnvironmentPdf(direction); }, &path);
-      } else if (hit.light >= 0) {
-        AddEmission(
-            t_.lights_.RectangleRadiance(hit.light, direction),
-            [&] {
-              return t_.lights_.RectanglePdf(hit.light, path.ray.origin, direction, hit.position);
-            },
-            &path);
-      } else if (bounce_ < t_.options_.max_bounces) {
-        vertices_.push_back(MakeVertex(hit, i, direction));
+      const bool met = !skip && t_.geometry_.Intersect(ray, &hit);
+      const Arrival arrival = ArrivalOf(ray, met ? &hit : nullptr, 0, 0.0);
+      Continue(i, ray, arrival, &vertices_);
+    }
+    CountLanes(paths_.size());
+    const auto rays = static_cast<std::int64_t>(paths_.size());
+    if (!empty) work_.rays.needed += rays;
+    (skip ? work_.rays.Skipped(SkipReason::kEmptyTiles) : work_.rays.done) += rays;
+  }
+
+  // What a ray finds that has met `hit`, or nothing if that is null, after so many reflections; the
+  // last of them chose its direction with the density pdf.
+  Arrival ArrivalOf(const Ray& ray, const Hit* hit, int reflections, double pdf) const {
+    Arrival arrival;
+    if (hit != nullptr && hit->light < 0) {
+      if (reflections == t_.options_.max_bounces) return arrival;
+      arrival.kind = Arrival::Kind::kSurface;
+      arrival.hit = *hit;
+      return arrival;
+    }
+    const bool reflected = reflections > 0;
+    if (reflected && t_.options_.estimator == Estimator::kLight) return arrival;
+    const Lights& lights = t_.lights_;
+    arrival.radiance = hit != nullptr ? lights.RectangleRadiance(hit->light, ray.direction)
+                                      : lights.EnvironmentRadiance(ray.direction);
+    if (arrival.radiance == Rgb{}) return arrival;
+    arrival.kind = Arrival::Kind::kLight;
+    if (reflected && t_.options_.estimator == Estimator::kMis) {
+      // The density with which the light would have been sampled.
+      const double light_pdf =
+          hit != nullptr ? lights.RectanglePdf(hit->light, ray.origin, ray.direction, hit->position)
+                         : lights.EnvironmentPdf(ray.direction);
+      arrival.weight = PowerHeuristic(pdf, light_pdf);
+    }
+    return arrival;
+  }
+
+  // Adds the light that the path has come to, or puts the place where it is reflected on the list.
+  void Continue(std::size_t path, const Ray& ray, const Arrival& arrival,
+                std::vector<Vertex>* vertices) {
+    if (arrival.kind == Arrival::Kind::kSurface) {
+      vertices->push_back(MakeVertex(arrival.hit, path, ray.direction));
+    } else if (arrival.kind == Arrival::Kind::kLight) {
+      Path& to = paths_[path];
+      for (int c = 0; c < 3; ++c) {
+        to.radiance[c] += arrival.weight * to.throughput[c] * arrival.radiance[c];
       }
     }
   }
 
-  // light_pdf(): the density with which the light would have been sampled.
-  template <typename Pdf>
-  void AddEmission(const Rgb& radiance, Pdf light_pdf, Path* path) const {
-    double weight = 1.0;
-    if (bounce_ > 0 && t_.options_.estimator == Estimator::kLight) return;
-    if (bounce_ > 0 && t_.options_.estimator == Estimator::kMis) {
-      weight = PowerHeuristic(path->pdf, light_pdf());
-    }
-    for (int c = 0; c < 3; ++c) path->radiance[c] += weight * path->throughput[c] * radiance[c];
-  }
-
-  // Reflects paths on one material: light sampled, and the direction in which the path goes on.
+  // Reflects paths on one material: light is sampled, and the direction in which the path goes on.
+  // Only when it is known what light arrives is the material asked how much of it is reflected.
   void Shade(std::span<const Vertex> vertices) {
-    const OpenMaterial& material = t_.materials_[std::size_t(vertices.front().material)];
-    pairs_.clear();
-    lit_.clear();
-    going_on_.clear();
+    const PreparedMaterial* material = Reach(vertices.front().material);
+    if (material == nullptr) return;
+    unneeded_.clear();
     SampleLights(vertices);
-    SampleDirections(vertices, *material.sampler);
-    values_.resize(pairs_.size());
-    material.brdf->Evaluate(pairs_, values_);
-    counts_->brdf_values += static_cast<std::int64_t>(pairs_.size());
-    AddLight(vertices, *material.sampler);
+    TraceShadowRays(vertices);
+    SampleDirections(vertices, *material->sampler);
+    TraceOnward();
+    EvaluatePairs(*material->brdf);
+    AddLight(vertices, *material->sampler);
     GoOn(vertices);
   }
 
-  // Lights that arrive at the vertices, to pairs_ and lit_.
+  const PreparedMaterial* Reach(int material) {
+    const Stopwatch stopwatch(&seconds_opening_);
+    return t_.materials_.Reach(std::size_t(material));
+  }
+
+  // Lights that may arrive at the vertices, to lit_.
   void SampleLights(std::span<const Vertex> vertices) {
+    lit_.clear();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Vertex& vertex = vertices[i];
       LightSample light;
       if (!t_.lights_.Sample(vertex.position, &paths_[vertex.path].random, &light)) continue;
-      const Vec3 wi = vertex.frame.ToLocal(light.direction);
-      if (!(wi.z > 0.0) || !(Dot(light.direction, vertex.normal) > 0.0)) continue;
-      if (light.weight == Rgb{}) continue;
-      ++counts_->rays;
-      if (t_.geometry_.Occluded(vertex.RayTo(light.direction), light.distance)) continue;
-      pairs_.push_back({wi, vertex.wo});
-      lit_.push_back({i, light.weight, light.pdf});
+      const DirectionPair pair = {vertex.frame.ToLocal(light.direction), vertex.wo};
+      const bool above = pair.wi.z > 0.0 && Dot(light.direction, vertex.normal) > 0.0;
+      if (above && light.weight != Rgb{}) {
+        lit_.push_back({i, pair, light});
+      } else {
+        const SkipReason reason = above ? SkipReason::kUnlit : SkipReason::kBelowHorizon;
+        LeaveOutValue(reason, pair);
+        LeaveOutShadowRay(reason, vertex.RayTo(light.direction), light.distance);
+      }
     }
   }
 
-  // Directions that the material chooses, to pairs_ and going_on_, after the lights.
+  // Takes those from lit_ which don't arrive.
+  void TraceShadowRays(std::span<const Vertex> vertices) {
+    const Stopwatch stopwatch(&work_.rays.seconds);
+    CountDone(lit_.size(), &work_.rays);
+    std::erase_if(lit_, [&](const Lit& lit) {
+      const Ray ray = vertices[lit.vertex].RayTo(lit.light.direction);
+      if (!t_.geometry_.Occluded(ray, lit.light.distance)) return false;
+      LeaveOutValue(SkipReason::kOccluded, lit.pair);
+      return true;
+    });
+  }
+
+  // Directions that the material chooses, to onward_.
   void SampleDirections(std::span<const Vertex> vertices, const ImportanceSampler& sampler) {
     const std::size_t n = vertices.size();
+    onward_.clear();
     viewers_.resize(n);
     numbers_.resize(n);
     directions_.resize(n);
@@ -211,46 +239,75 @@ class TilePaths {
     }
     sampler.Sample(viewers_, numbers_, directions_, pdfs_);
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 world = vertices[i].frame.ToWorld(directions_[i]);
-      if (!(pdfs_[i] > 0.0) || !(Dot(world, vertices[i].normal) > 0.0)) continue;
-      pairs_.push_back({directions_[i], vertices[i].wo});
-      going_on_.push_back(i);
+      const Vertex& vertex = vertices[i];
+      const Vec3 world = vertex.frame.ToWorld(directions_[i]);
+      const DirectionPair pair = {directions_[i], vertex.wo};
+      if (pdfs_[i] > 0.0 && Dot(world, vertex.normal) > 0.0) {
+        onward_.push_back({i, pair, pdfs_[i], vertex.RayTo(Normalized(world))});
+      } else {
+        LeaveOutValue(SkipReason::kBelowHorizon, pair);
+      }
     }
+  }
+
+  // Looks where the directions lead to, and takes those from onward_ that lead to nothing.
+  void TraceOnward() {
+    const Stopwatch stopwatch(&work_.rays.seconds);
+    CountDone(onward_.size(), &work_.rays);
+    std::erase_if(onward_, [&](Onward& onward) {
+      Hit hit;
+      const bool met = t_.geometry_.Intersect(onward.ray, &hit);
+      onward.arrival = ArrivalOf(onward.ray, met ? &hit : nullptr, bounce_ + 1, onward.pdf);
+      if (onward.arrival.kind != Arrival::Kind::kNothing) return false;
+      LeaveOutValue(SkipReason::kUnlit, onward.pair);
+      return true;
+    });
+  }
+
+  // The pairs of lit_, then those of onward_, and in the end unneeded ones; all to values_.
+  void EvaluatePairs(const Brdf& brdf) {
+    pairs_.clear();
+    for (const Lit& lit : lit_) pairs_.push_back(lit.pair);
+    for (const Onward& onward : onward_) pairs_.push_back(onward.pair);
+    CountDone(pairs_.size(), &work_.brdf_values);
+    work_.brdf_values.done += static_cast<std::int64_t>(unneeded_.size());
+    pairs_.insert(pairs_.end(), unneeded_.begin(), unneeded_.end());
+    values_.resize(pairs_.size());
+    if (pairs_.empty()) return;
+    const Stopwatch stopwatch(&work_.brdf_values.seconds);
+    brdf.Evaluate(pairs_, values_);
   }
 
   // The light sampled, times what the material makes of it.
   void AddLight(std::span<const Vertex> vertices, const ImportanceSampler& sampler) {
+    const bool mis = t_.options_.estimator == Estimator::kMis;
     viewed_.clear();
-    for (std::size_t k = 0; k < lit_.size(); ++k) viewed_.push_back(Swapped(pairs_[k]));
-    light_pdfs_.resize(lit_.size());
-    if (t_.options_.estimator == Estimator::kMis) sampler.Pdf(viewed_, light_pdfs_);
+    for (const Lit& lit : lit_) viewed_.push_back(Swapped(lit.pair));
+    pdfs_.resize(lit_.size());
+    if (mis) sampler.Pdf(viewed_, pdfs_);
     for (std::size_t k = 0; k < lit_.size(); ++k) {
       const Lit& lit = lit_[k];
-      double weight = pairs_[k].wi.z;
-      if (t_.options_.estimator == Estimator::kMis && lit.pdf > 0.0) {
-        weight *= PowerHeuristic(lit.pdf, light_pdfs_[k]);
-      }
+      double weight = lit.pair.wi.z;
+      if (mis && lit.light.pdf > 0.0) weight *= PowerHeuristic(lit.light.pdf, pdfs_[k]);
       Path& path = paths_[vertices[lit.vertex].path];
       for (int c = 0; c < 3; ++c) {
-        path.radiance[c] += path.throughput[c] * values_[k][c] * weight * lit.weight[c];
+        path.radiance[c] += path.throughput[c] * values_[k][c] * weight * lit.light.weight[c];
       }
     }
   }
 
   // Sends the paths on in the directions chosen.
   void GoOn(std::span<const Vertex> vertices) {
-    for (std::size_t k = 0; k < going_on_.size(); ++k) {
-      const Vertex& vertex = vertices[going_on_[k]];
-      const DirectionPair& pair = pairs_[lit_.size() + k];
+    for (std::size_t k = 0; k < onward_.size(); ++k) {
+      const Onward& onward = onward_[k];
+      const std::size_t i = vertices[onward.vertex].path;
       const Rgb& value = values_[lit_.size() + k];
-      Path& path = paths_[vertex.path];
-      path.pdf = pdfs_[going_on_[k]];
-      for (int c = 0; c < 3; ++c) path.throughput[c] *= value[c] * pair.wi.z / path.pdf;
+      Path& path = paths_[i];
+      for (int c = 0; c < 3; ++c) path.throughput[c] *= value[c] * onward.pair.wi.z / onward.pdf;
       if (!IsFinite(path.throughput)) {
         path.radiance.fill(std::numeric_limits<double>::quiet_NaN());  // dropped later
       } else if (Survives(&path)) {
-        path.ray = vertex.RayTo(Normalized(vertex.frame.ToWorld(pair.wi)));
-        active_.push_back(vertex.path);
+        Continue(i, onward.ray, onward.arrival, &next_);
       }
     }
   }
@@ -264,59 +321,75 @@ class TilePaths {
     return true;
   }
 
-  struct Lit {
-    std::size_t vertex;
-    Rgb weight;
-    double pdf;
-  };
+  // A value that isn't needed: counted, or put where it is asked for and then forgotten.
+  void LeaveOutValue(SkipReason reason, const DirectionPair& pair) {
+    if (t_.options_.skip) {
+      ++work_.brdf_values.Skipped(reason);
+    } else {
+      unneeded_.push_back(pair);
+    }
+  }
+
+  // Likewise of a ray, which is traced right away.
+  void LeaveOutShadowRay(SkipReason reason, const Ray& ray, double distance) {
+    if (t_.options_.skip) {
+      ++work_.rays.Skipped(reason);
+      return;
+    }
+    const Stopwatch stopwatch(&work_.rays.seconds);
+    t_.geometry_.Occluded(ray, distance);
+    ++work_.rays.done;
+  }
+
+  void CountLanes(std::size_t going_on) {
+    CountDone(going_on, &work_.lanes);
+    work_.lanes.Skipped(SkipReason::kEnded) += static_cast<std::int64_t>(paths_.size() - going_on);
+  }
+
+  // Things that were needed.
+  static void CountDone(std::size_t count, Work* work) {
+    work->needed += static_cast<std::int64_t>(count);
+    work->done += static_cast<std::int64_t>(count);
+  }
 
   const PathTracer& t_;
-  TileCounts* counts_;
-  int bounce_ = 0;
+  TileCounts& counts_;
+  RenderWork& work_;
+  double seconds_opening_ = 0.0;
+  int bounce_ = 0;  // reflections before those under way
   std::vector<Path> paths_;
-  std::vector<std::size_t> active_;
-  std::vector<Vertex> vertices_;
+  std::vector<Ray> camera_rays_;
+  std::vector<Vertex> vertices_, next_;
 
-  // Of Shade: the lights' pairs first, then those of the directions to go on in.
-  std::vector<DirectionPair> pairs_;
-  std::vector<Rgb> values_;
+  // Of Shade.
   std::vector<Lit> lit_;
-  std::vector<std::size_t> going_on_;
-  std::vector<DirectionPair> viewed_;
+  std::vector<Onward> onward_;
+  std::vector<DirectionPair> pairs_, unneeded_, viewed_;
+  std::vector<Rgb> values_;
   std::vector<Vec3> viewers_, directions_;
   std::vector<std::array<double, 2>> numbers_;
-  std::vector<double> pdfs_, light_pdfs_;
+  std::vector<double> pdfs_;
 };
 
-PathTracer::PathTracer(const Scene& scene, const Geometry& geometry,
-                       const std::vector<OpenMaterial>& materials, const RenderOptions& options)
+PathTracer::PathTracer(const Scene& scene, const PinholeCamera& camera, const Geometry& geometry,
+                       const RenderOptions& options, Materials* materials)
     : scene_(scene),
+      camera_(camera),
       geometry_(geometry),
-      materials_(materials),
       options_(options),
-      lights_(scene, options.estimator) {
-  const Camera& camera = scene.camera;
-  const double half_width = std::tan(camera.field_of_view * std::numbers::pi / 360.0);
-  const double half_height = half_width * scene.film.height / scene.film.width;
-  forward_ = Normalized(camera.target - camera.origin);
-  const Vec3 right = Normalized(Cross(forward_, camera.up));
-  right_ = half_width * right;
-  up_ = half_height * Cross(right, forward_);
-}
+      materials_(*materials),
+      lights_(scene, options.estimator) {}
 
-Ray PathTracer::CameraRay(int x, int y, Random* random) const {
-  const auto [dx, dy] = random->Pair();
-  const double across = 2.0 * (x + dx) / scene_.film.width - 1.0;
-  const double down = 2.0 * (y + dy) / scene_.film.height - 1.0;
-  return {scene_.camera.origin, Normalized(forward_ + across * right_ - down * up_)};
-}
-
-void PathTracer::Trace(const Tile& tile, int first, int count, std::span<PixelSum> pixels,
+void PathTracer::Trace(const SampleRange& range, std::span<PixelSum> pixels,
                        TileCounts* counts) const {
+  const Timer timer;
   TilePaths paths(*this, counts);
-  paths.Start(tile, first, count);
+  paths.Start(range);
   paths.Follow();
   paths.Deposit(pixels);
+  const double seconds = timer.Seconds() - paths.seconds_opening();
+  counts->work.samples.seconds += seconds;
+  counts->work.lanes.seconds += seconds;
 }
 
 }  // namespace pbnbrdf

@@ -77,7 +77,9 @@ class QuadrantBrdf final : public PointwiseBrdf {
 TEST(Render, MaterialsAreTurnedAsTheirShapes) {
   const Vec3 to_light = Normalized({0.3, 0.2, 1.0});
   const auto value = [&](const Scene& scene) {
-    const auto open = [](const std::string&) { return std::make_unique<QuadrantBrdf>(); };
+    const auto open = [](const std::string&) {
+      return OpenedMaterial{std::make_unique<QuadrantBrdf>()};
+    };
     const Rendering rendering = Render(scene, open, {.samples_per_pixel = 1});
     return rendering.image.pixel(1, 1)[0] / to_light.z;
   };
@@ -315,8 +317,8 @@ TEST(Render, EnergyGainsExplodeInAClosedRoom) {
   Scene scene = SceneFrom(1.0, 60.0, 4);
   AddSphere({0.0, 0.0, 0.0}, 3.0, "gaining", &scene);
   scene.point_lights.push_back({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}});
-  const auto open = [](const std::string&) -> std::unique_ptr<Brdf> {
-    return std::make_unique<ScaledBrdf>(OpenTestMaterial("white:1"), 1.2);
+  const auto open = [](const std::string&) {
+    return OpenedMaterial{std::make_unique<ScaledBrdf>(OpenTestMaterial("white:1"), 1.2)};
   };
   const Rendering rendering = Render(scene, open, {.samples_per_pixel = 4, .max_bounces = 64});
   const double expected = 1.2 * (std::pow(1.2, 64) - 1.0) / 0.2 / 9.0 / kPi;
@@ -397,19 +399,21 @@ TEST(Render, AsksMaterialsInBatchesAndForNoMoreThanItNeeds) {
   CountingBrdf brdf(0.2, &fitting);
   const ImportanceSampler sampler(brdf);  // asks, too
   std::vector<std::string> opened;
-  const auto open = [&](const std::string& source) -> std::unique_ptr<Brdf> {
+  const auto open = [&](const std::string& source) {
     opened.push_back(source);
-    return std::make_unique<CountingBrdf>(0.2, &asked);
+    return OpenedMaterial{std::make_unique<CountingBrdf>(0.2, &asked)};
   };
   const Rendering rendering = Render(scene, open, {.samples_per_pixel = 16});
-  EXPECT_THAT(opened,
-              testing::ElementsAre("builtin:satin-gold", "builtin:red-satin-plastic", "white:0.7"));
-  EXPECT_EQ(rendering.summary.materials_opened, 3);
+  EXPECT_THAT(opened, testing::UnorderedElementsAre("builtin:satin-gold",
+                                                    "builtin:red-satin-plastic", "white:0.7"));
+  const RenderWork& work = rendering.summary.work;
+  EXPECT_EQ(work.materials.done, 3);
+  EXPECT_EQ(work.materials.Skipped(SkipReason::kUnreferenced), 1);
   EXPECT_EQ(asked.below - 3 * fitting.below, 0);
-  EXPECT_EQ(asked.values - 3 * fitting.values, rendering.summary.brdf_values);
-  EXPECT_GT(rendering.summary.brdf_values, 16 * 16 * 16);
+  EXPECT_EQ(asked.values - 3 * fitting.values, work.brdf_values.done);
+  EXPECT_GT(work.brdf_values.done, 16 * 16 * 16);
   const std::int64_t calls = asked.calls - 3 * fitting.calls;
-  EXPECT_GE(rendering.summary.brdf_values / calls, 64);
+  EXPECT_GE(work.brdf_values.done / calls, 64);
 }
 
 TEST(Render, SamplesThatArentFiniteAreDroppedAndCounted) {
@@ -418,7 +422,7 @@ TEST(Render, SamplesThatArentFiniteAreDroppedAndCounted) {
   scene.point_lights.push_back({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}});
   Asked asked;
   const auto open = [&](const std::string&) {
-    return std::make_unique<CountingBrdf>(1e12, &asked);
+    return OpenedMaterial{std::make_unique<CountingBrdf>(1e12, &asked)};
   };
   const Rendering rendering = Render(scene, open, {.samples_per_pixel = 3, .max_bounces = 64});
   EXPECT_EQ(rendering.summary.dropped_samples, 4 * 4 * 3);

@@ -49,7 +49,9 @@ inline std::unique_ptr<Brdf> OpenTestMaterial(const std::string& source) {
 }
 
 inline Rendering RenderTest(const Scene& scene, const RenderOptions& options) {
-  return Render(scene, OpenTestMaterial, options);
+  return Render(
+      scene, [](const std::string& source) { return OpenedMaterial{OpenTestMaterial(source)}; },
+      options);
 }
 
 // The mean of a pixel over 8 x 8 directions, given the radiance that the camera of SceneFrom sees.

@@ -1,0 +1,31 @@
+// stopwatch.h: how long things take.
+#pragma once
+
+#include <chrono>
+
+namespace pbnbrdf {
+
+class Timer {
+ public:
+  double Seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const Clock::time_point start_ = Clock::now();
+};
+
+// Adds the time from its construction to its end to a sum of seconds.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double* seconds) : seconds_(seconds) {}
+  ~Stopwatch() { *seconds_ += timer_.Seconds(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double* seconds_;
+  const Timer timer_;
+};
+
+}  // namespace pbnbrdf

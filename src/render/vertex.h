@@ -1,0 +1,34 @@
+// vertex.h: where a path is reflected.
+#pragma once
+
+#include <cstddef>
+
+#include "geometry.h"
+
+namespace pbnbrdf {
+
+// A right-handed orthonormal frame; z is the normal.
+struct Frame {
+  Vec3 x, y, z;
+
+  Vec3 ToLocal(const Vec3& v) const { return {Dot(v, x), Dot(v, y), Dot(v, z)}; }
+  Vec3 ToWorld(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
+};
+
+// The normals are on the viewer's side.
+struct Vertex {
+  std::size_t path;
+  int material;
+  Vec3 position, normal;
+  Frame frame;  // about the shading normal
+  Vec3 wo;      // to the viewer, in the frame
+  double margin;
+
+  // The start of a ray that leaves on the viewer's side.
+  Ray RayTo(const Vec3& direction) const { return {position + margin * normal, direction}; }
+};
+
+// Where a path that travels in `direction` meets a shape.
+Vertex MakeVertex(const Hit& hit, std::size_t path, const Vec3& direction);
+
+}  // namespace pbnbrdf

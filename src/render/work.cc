@@ -1,0 +1,33 @@
+#include "pbnbrdf/render/work.h"
+
+#include <numeric>
+
+namespace pbnbrdf {
+
+std::int64_t Work::AllSkipped() const {
+  return std::accumulate(skipped.begin(), skipped.end(), std::int64_t{0});
+}
+
+std::optional<double> Work::SecondsSavedEstimate() const {
+  if (AllSkipped() == 0) return 0.0;
+  if (done == 0) return std::nullopt;
+  return seconds / static_cast<double>(done) * static_cast<double>(AllSkipped());
+}
+
+Work& Work::operator+=(const Work& other) {
+  needed += other.needed;
+  done += other.done;
+  for (std::size_t i = 0; i < skipped.size(); ++i) skipped[i] += other.skipped[i];
+  seconds += other.seconds;
+  return *this;
+}
+
+RenderWork& RenderWork::operator+=(const RenderWork& other) {
+  for (const auto kind : {&RenderWork::materials, &RenderWork::samples, &RenderWork::lanes,
+                          &RenderWork::rays, &RenderWork::brdf_values}) {
+    this->*kind += other.*kind;
+  }
+  return *this;
+}
+
+}  // namespace pbnbrdf
