@@ -165,6 +165,11 @@ std::vector<std::string> FlagLines(const std::vector<std::string>& names) {
   return lines;
 }
 
+bool IsGiven(const std::string& name) {
+  gflags::CommandLineFlagInfo info;
+  return gflags::GetCommandLineFlagInfo(name.c_str(), &info) && !info.is_default;
+}
+
 void RequireFlag(const std::string& name, const std::string& value) {
   if (value.empty()) FailUsage("--", name, " is required");
 }

@@ -40,6 +40,9 @@ std::string HelpText(const Command& command);
 // "--name=value" for each flag that gflags holds, of those named.
 std::vector<std::string> FlagLines(const std::vector<std::string>& names);
 
+// Whether the command line, or a flagfile, has set the flag to anything but its default.
+bool IsGiven(const std::string& name);
+
 // Throws UsageError "--name is required" if the flag's value is empty.
 void RequireFlag(const std::string& name, const std::string& value);
 

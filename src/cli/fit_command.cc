@@ -2,8 +2,6 @@
 #include <gflags/gflags.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -11,14 +9,17 @@
 #include "commands.h"
 #include "fit_flags.h"
 #include "fit_model.h"
+#include "fit_record.h"
+#include "fit_scene.h"
+#include "interrupt.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
 #include "pbnbrdf/solve/fit.h"
 #include "report.h"
 #include "shared_flags.h"
 
+DECLARE_string(encoding);
 DECLARE_string(init);
-DECLARE_string(terms);
 DEFINE_string(summary, "", "write measures, cost, time and the problem to this JSON file");
 DEFINE_string(trace, "", "write a row for each iteration to this CSV");
 DEFINE_bool(quiet, false, "print nothing");
@@ -29,14 +30,6 @@ namespace {
 constexpr std::size_t kSummarySamples = 100000;
 constexpr std::uint64_t kSummarySeed = 1;
 
-std::atomic<bool> interrupted = false;
-
-// Ctrl-C asks the fit to stop after the iteration; a second one ends the program.
-void OnInterrupt(int) {
-  interrupted = true;
-  std::signal(SIGINT, SIG_DFL);
-}
-
 void ShowProgress(const FitProgress& progress) {
   std::fprintf(stderr, "\r\033[Kiteration %d  cost %.4g  held-out error %.5f  %.1f s",
                progress.iteration, progress.cost, progress.heldout_error, progress.seconds);
@@ -45,52 +38,6 @@ void ShowProgress(const FitProgress& progress) {
 std::string TraceRow(const FitProgress& progress) {
   return StrCat(progress.iteration, ",", FormatNumber(progress.seconds), ",",
                 FormatNumber(progress.cost), ",", FormatNumber(progress.heldout_error), "\n");
-}
-
-NeuralBrdf::Metadata Describe(const FitProblem& problem, const FitSummary& summary,
-                              const nlohmann::ordered_json& measures, const std::string& flags) {
-  return {{"version", PBNBRDF_VERSION},
-          {"material", FLAGS_material},
-          {"scale_to_albedo", FormatNumber(FLAGS_scale_to_albedo)},
-          {"terms", FLAGS_terms},
-          {"problem", flags},
-          {"seed", StrCat(problem.seed)},
-          {"termination", std::string(NameOf(kTerminations, summary.termination))},
-          {"mean_abs_log_error", FormatNumber(measures["mean_abs_log_error"])},
-          {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}};
-}
-
-nlohmann::ordered_json EnergyJson(const EnergySummary& energy) {
-  return {{"first_max_albedo", energy.first_max_albedo},
-          {"max_albedo", energy.max_albedo},
-          {"rounds", energy.rounds},
-          {"strata", energy.strata},
-          {"correction", energy.correction},
-          {"albedos", energy.work.albedos},
-          {"albedos_skipped", energy.work.albedos_skipped},
-          {"jacobians", energy.work.jacobians},
-          {"jacobians_skipped", energy.work.jacobians_skipped}};
-}
-
-nlohmann::ordered_json SummaryJson(nlohmann::ordered_json measures, const FitProblem& problem,
-                                   const FitSummary& summary, const std::string& flags) {
-  measures["material"] = FLAGS_material;
-  measures["scale_to_albedo"] = FLAGS_scale_to_albedo;
-  measures["cost"] = summary.final_cost;
-  measures["iterations"] = summary.iterations;
-  measures["restarts"] = summary.restarts;
-  measures["failed_factorizations"] = summary.failed_factorizations;
-  measures["rejected_steps"] = summary.rejected_steps;
-  measures["samples_used"] = summary.samples;
-  measures["energy_term"] = EnergyJson(summary.energy);
-  measures["precision_limited"] = summary.precision_limited;
-  measures["seconds"] = summary.seconds;
-  measures["seed"] = problem.seed;
-  measures["termination"] = NameOf(kTerminations, summary.termination);
-  measures["message"] = summary.message;
-  measures["version"] = PBNBRDF_VERSION;
-  measures["problem"] = flags;
-  return measures;
 }
 
 // What the energy term did, in a line; "" if it wasn't needed.
@@ -135,6 +82,7 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
 }
 
 int RunFit(const std::vector<std::string>&) {
+  if (FitsScene()) return RunSceneFit();
   CheckMaterialFlags();
   RequireFlag("out", FLAGS_out);
   if (FitsModel()) return RunModelFit();
@@ -143,9 +91,10 @@ int RunFit(const std::vector<std::string>&) {
   CheckWritable(FLAGS_out);
   if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
   if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
-  std::signal(SIGINT, OnInterrupt);
+  CatchInterrupt();
   const std::unique_ptr<Brdf> material = OpenMaterial();
   ResolveNetwork(*material, &flags.problem);
+  FLAGS_encoding = NameOf(kEncodings, flags.problem.encoding);  // for the flagfile of this fit
   if (!FLAGS_init.empty()) {
     flags.options.initial_weights = WeightsOf(FLAGS_init, flags.problem.Shape());
     ValidateFit(flags.problem, flags.options);
@@ -156,22 +105,20 @@ int RunFit(const std::vector<std::string>&) {
   flags.options.on_iteration = [&](const FitProgress& progress) {
     if (show_progress) ShowProgress(progress);
     trace += TraceRow(progress);
-    return !interrupted;
+    return !Interrupted();
   };
   const Fit fit = AboutMaterial([&] { return FitBrdf(*material, flags.problem, flags.options); });
   if (show_progress) std::fprintf(stderr, "\r\033[K");
 
   const nlohmann::ordered_json measures = MeasureFit(
       *material, fit.network, fit.network.weights().size(), kSummarySamples, kSummarySeed);
-  const std::string flagfile = ProblemFlagfile();
+  const FitSubject subject = {FLAGS_material, FLAGS_scale_to_albedo, ProblemFlagfile()};
   NeuralBrdf(fit.network.shape(), fit.network.weights(),
-             Describe(flags.problem, fit.summary, measures, flagfile))
+             FitMetadata(subject, flags.problem, fit.summary, measures))
       .Write(FLAGS_out);
   if (!FLAGS_summary.empty()) {
     WriteFile(FLAGS_summary,
-              SummaryJson(measures, flags.problem, fit.summary, flagfile)
-                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                  "\n");
+              JsonText(FitSummaryJson(subject, flags.problem, fit.summary, measures)));
   }
   if (!FLAGS_trace.empty()) WriteFile(FLAGS_trace, trace);
   if (!FLAGS_quiet) {
@@ -203,17 +150,22 @@ Command FitCommand() {
       "  pbnbrdf fit --material=gold.binary --out=gold.safetensors\n"
       "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary "
       "--out=gold.safetensors\n"
-      "  pbnbrdf fit --model=ggx --lobes=2 --material=gold.binary --out=gold.json\n";
+      "  pbnbrdf fit --model=ggx --lobes=2 --material=gold.binary --out=gold.json\n"
+      "  pbnbrdf fit --scene=problems/scenes/sphere.json --out_dir=fits\n";
   command.notes =
       std::string(kSourceNotes) +
       "\nWith --model the file holds the model, its parameters and its errors; of the flags above "
       "it\n"
       "takes sampling, samples [6000], seed, loss_scale, starts [12], max_iterations [100] and\n"
       "function_tolerance [1e-05].\n"
+      "\nWith --scene the materials of a scene are fitted, each where the scene asks for it; "
+      "render\n"
+      "--fits=DIR takes them. Ctrl-C keeps the networks so far.\n"
       "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
   command.flags = {MaterialFlagsAnd({"out", "summary", "trace", "quiet", "threads"})};
   for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);
   command.flags.push_back(ModelFlags());
+  command.flags.push_back(SceneFlags());
   command.run = RunFit;
   return command;
 }

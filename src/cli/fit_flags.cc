@@ -157,7 +157,6 @@ FitFlags ParseFitFlags() {
 void ResolveNetwork(const Brdf& material, FitProblem* problem) {
   problem->channels = material.NumChannels();
   problem->encoding = ParseEncoding().value_or(EncodingFor(material));
-  FLAGS_encoding = NameOf(kEncodings, problem->encoding);
 }
 
 }  // namespace pbnbrdf::cli

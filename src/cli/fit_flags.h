@@ -20,7 +20,7 @@ struct FitFlags {
 FitFlags ParseFitFlags();
 
 // Settles what depends on the material, now that it is known: its channels, and what --encoding=auto
-// stands for, in the problem and in the flag, so that the flagfile of a fit names it.
+// stands for.
 void ResolveNetwork(const Brdf& material, FitProblem* problem);
 
 }  // namespace pbnbrdf::cli

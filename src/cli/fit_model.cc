@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fit_flags.h"
+#include "fit_record.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/fit_analytic.h"
 #include "report.h"
@@ -39,11 +40,6 @@ constexpr std::uint64_t kMeasuredSeed = 1;
 // Flags of networks that models have, too.
 constexpr const char* kSharedFlags[] = {
     "sampling", "samples", "seed", "function_tolerance", "loss_scale", "max_iterations", "starts"};
-
-bool IsGiven(const std::string& flag) {
-  gflags::CommandLineFlagInfo info;
-  return gflags::GetCommandLineFlagInfo(flag.c_str(), &info) && !info.is_default;
-}
 
 void RefuseFlagsOfNetworks() {
   std::vector<std::string> names = {"summary", "trace"};
@@ -124,10 +120,7 @@ int RunModelFit() {
       [&, model = model, &options = options] { return FitAnalytic(*material, *model, options); });
   const nlohmann::ordered_json errors = MeasureFit(
       *material, fit.brdf, fit.brdf.parameters().size(), kMeasuredSamples, kMeasuredSeed);
-  WriteFile(
-      FLAGS_out,
-      FitJson(fit, options, errors).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-          "\n");
+  WriteFile(FLAGS_out, JsonText(FitJson(fit, options, errors)));
   if (!FLAGS_quiet && FLAGS_out != "-") {
     std::cout << FLAGS_out << ": " << fit.brdf.Description() << "; "
               << (fit.summary.converged ? "converged" : "stopped") << " after "

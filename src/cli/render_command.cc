@@ -2,13 +2,14 @@
 #include <gflags/gflags.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
 #include "pbnbrdf/image/exr.h"
@@ -25,6 +26,7 @@ DECLARE_string(summary);
 DEFINE_string(scene, "", "scene file (JSON); problems/scenes/README.md describes it");
 DEFINE_string(environment, "",
               "OpenEXR file, latitude-longitude, in place of the scene's environment light");
+DEFINE_string(fits, "", "folder of networks that fit --scene has fitted to the scene's materials");
 DEFINE_string(png, "", "write the image as PNG (sRGB), too");
 DEFINE_double(exposure, 1.0, "of the PNG: what radiance is multiplied by, > 0");
 DEFINE_int32(samples_per_pixel, 256, "paths for each pixel");
@@ -41,14 +43,6 @@ DEFINE_bool(no_skip, false,
 namespace pbnbrdf::cli {
 namespace {
 
-std::atomic<bool> interrupted = false;
-
-// Ctrl-C asks the render to stop after the tile; a second one ends the program.
-void OnInterrupt(int) {
-  interrupted = true;
-  std::signal(SIGINT, SIG_DFL);
-}
-
 // --material=NAME=SOURCE, several with ; in between.
 std::map<std::string, std::string> MaterialChanges() {
   std::map<std::string, std::string> sources;
@@ -63,6 +57,20 @@ std::map<std::string, std::string> MaterialChanges() {
     }
   }
   return sources;
+}
+
+// The networks that fit --scene has left in the folder take the place of their materials.
+void TakeFits(const std::string& folder, std::vector<SceneMaterial>* materials) {
+  bool found = false;
+  for (SceneMaterial& material : *materials) {
+    const std::filesystem::path file =
+        std::filesystem::path(folder) / (material.name + ".safetensors");
+    if (!std::filesystem::exists(file)) continue;
+    found = true;
+    material.source = file;
+    material.scale_to_albedo = 0.0;  // the network is of the scaled material
+  }
+  if (!found) Fail("--fits=", folder, ": has none of the scene's materials, NAME.safetensors");
 }
 
 RenderOptions ParseOptions() try {
@@ -92,7 +100,7 @@ std::map<std::string, std::string> Metadata(const RenderSummary& summary) {
                                                  {"pbnbrdf:seed", StrCat(FLAGS_seed)},
                                                  {"pbnbrdf:samples", StrCat(summary.samples)}};
   metadata["pbnbrdf:stopped"] = summary.stopped ? "true" : "false";
-  for (const std::string& line : FlagLines({"environment", "material", "samples_per_pixel",
+  for (const std::string& line : FlagLines({"environment", "material", "fits", "samples_per_pixel",
                                             "max_bounces", "estimator", "target_error"})) {
     const std::size_t equals = line.find('=');
     metadata["pbnbrdf:" + line.substr(2, equals - 2)] = line.substr(equals + 1);
@@ -139,8 +147,9 @@ int RunRender(const std::vector<std::string>&) {
   RenderOptions options = ParseOptions();
   const SceneChanges changes = {FLAGS_environment, MaterialChanges()};
   CheckOutputs();
-  const Scene scene = ReadScene(FLAGS_scene, changes);
-  std::signal(SIGINT, OnInterrupt);
+  Scene scene = ReadScene(FLAGS_scene, changes);
+  if (!FLAGS_fits.empty()) TakeFits(FLAGS_fits, &scene.materials);
+  CatchInterrupt();
   const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
   int shown = -1;
   options.on_progress = [&](const RenderProgress& progress) {
@@ -149,7 +158,7 @@ int RunRender(const std::vector<std::string>&) {
       shown = percent;
       std::fprintf(stderr, "\r\033[K%d %%  %.1f s", percent, progress.seconds);
     }
-    return !interrupted;
+    return !Interrupted();
   };
   const Rendering rendering = [&] {
     try {
@@ -181,11 +190,14 @@ Command RenderCommand() {
       "  pbnbrdf render --scene=problems/scenes/sphere.json --out=sphere.exr --png=sphere.png\n"
       "  pbnbrdf render --scene=problems/scenes/sphere.json --environment=studio.exr \\\n"
       "                 --material=surface=gold.safetensors --out=gold.exr\n"
+      "  pbnbrdf fit --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
+      "  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr\n"
       "  pbnbrdf render --scene=problems/scenes/gallery.json --samples_per_pixel=4096 \\\n"
       "                 --target_error=0.02 --out=gallery.exr --summary=gallery.json\n";
   command.notes =
       "--material=NAME=SOURCE gives the scene's material NAME another source, several with ; in\n"
       "between. Files that a scene names are in its folder; sources of materials may be, too.\n"
+      "--fits=DIR takes DIR/NAME.safetensors for material NAME, where there is one.\n"
       "\nWhat the image doesn't depend on is left out: materials that no path gets to aren't "
       "opened,\n"
       "parts of the image without shapes trace no rays, and materials aren't asked for directions\n"
@@ -208,9 +220,9 @@ Command RenderCommand() {
       "keeps the image so far.\n\n" +
       std::string(kSourceNotes);
   command.flags = {{"",
-                    {"scene", "environment", "material", "out", "png", "exposure", "summary",
-                     "samples_per_pixel", "target_error", "seed", "max_bounces", "estimator",
-                     "no_skip", "threads", "quiet"}}};
+                    {"scene", "environment", "material", "fits", "out", "png", "exposure",
+                     "summary", "samples_per_pixel", "target_error", "seed", "max_bounces",
+                     "estimator", "no_skip", "threads", "quiet"}}};
   command.run = RunRender;
   return command;
 }

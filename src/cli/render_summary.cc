@@ -26,43 +26,50 @@ std::vector<Kind> Kinds() {
 
 }  // namespace
 
+nlohmann::ordered_json WorkJson(const Work& work, const std::vector<SkipReason>& reasons) {
+  nlohmann::ordered_json json = {{"needed", work.needed}, {"done", work.done}};
+  for (const SkipReason reason : reasons) {
+    json["skipped"][std::string(NameOf(kSkipReasons, reason))] = work.Skipped(reason);
+  }
+  json["seconds"] = work.seconds;
+  const std::optional<double> saved = work.SecondsSavedEstimate();
+  json["seconds_saved_estimate"] = saved ? nlohmann::ordered_json(*saved) : nullptr;
+  return json;
+}
+
+std::string WorkText(const std::string& kind, const Work& work,
+                     const std::vector<SkipReason>& reasons) {
+  std::ostringstream text;
+  text << "  " << std::left << std::setw(12) << kind << work.done << " done";
+  if (work.needed != work.done) text << ", " << work.needed << " needed";
+  text << "; skipped:";
+  for (const SkipReason reason : reasons) {
+    text << (reason == reasons.front() ? " " : ", ") << work.Skipped(reason) << " "
+         << NameOf(kSkipReasons, reason);
+  }
+  const std::optional<double> saved = work.SecondsSavedEstimate();
+  if (saved && *saved > 0.0) {
+    text << " (saved about " << std::setprecision(2) << *saved << " s of one thread)";
+  }
+  text << "\n";
+  return text.str();
+}
+
 nlohmann::ordered_json ToJson(const RenderSummary& summary) {
   nlohmann::ordered_json json = {{"image_samples", summary.samples},
                                  {"dropped_samples", summary.dropped_samples},
                                  {"stopped", summary.stopped},
                                  {"seconds", summary.seconds}};
   for (const Kind& kind : Kinds()) {
-    const Work& work = summary.work.*kind.work;
-    nlohmann::ordered_json& to = json[kind.key];
-    to = {{"needed", work.needed}, {"done", work.done}};
-    for (const SkipReason reason : kind.reasons) {
-      to["skipped"][std::string(NameOf(kSkipReasons, reason))] = work.Skipped(reason);
-    }
-    to["seconds"] = work.seconds;
-    const std::optional<double> saved = work.SecondsSavedEstimate();
-    to["seconds_saved_estimate"] = saved ? nlohmann::ordered_json(*saved) : nullptr;
+    json[kind.key] = WorkJson(summary.work.*kind.work, kind.reasons);
   }
   return json;
 }
 
-std::string WorkText(const RenderWork& all) {
-  std::ostringstream text;
-  for (const Kind& kind : Kinds()) {
-    const Work& work = all.*kind.work;
-    text << "  " << std::left << std::setw(12) << kind.key << work.done << " done";
-    if (work.needed != work.done) text << ", " << work.needed << " needed";
-    text << "; skipped:";
-    for (const SkipReason reason : kind.reasons) {
-      text << (reason == kind.reasons.front() ? " " : ", ") << work.Skipped(reason) << " "
-           << NameOf(kSkipReasons, reason);
-    }
-    const std::optional<double> saved = work.SecondsSavedEstimate();
-    if (saved && *saved > 0.0) {
-      text << " (saved about " << std::setprecision(2) << *saved << " s of one thread)";
-    }
-    text << "\n";
-  }
-  return text.str();
+std::string WorkText(const RenderWork& work) {
+  std::string text;
+  for (const Kind& kind : Kinds()) text += WorkText(kind.key, work.*kind.work, kind.reasons);
+  return text;
 }
 
 }  // namespace pbnbrdf::cli

@@ -1,16 +1,24 @@
-// render_summary.h: what a render did and what it left out, as JSON and as text.
+// render_summary.h: what was done for a scene and what was left out, as JSON and as text.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "pbnbrdf/render/render.h"
 
 namespace pbnbrdf::cli {
 
-// "image_samples", "dropped_samples", "stopped", "seconds", and for each kind of work (render/work.h) an
-// object: "needed", "done", "skipped" by reason, "seconds" that what was done took, of all threads
-// together, and "seconds_saved_estimate", null where nothing was done to estimate it by.
+// One kind of work (render/work.h): "needed", "done", "skipped" by each of the reasons, "seconds" that
+// what was done took, of all threads together, and "seconds_saved_estimate", null where nothing was
+// done to estimate it by.
+nlohmann::ordered_json WorkJson(const Work& work, const std::vector<SkipReason>& reasons);
+
+// The same, a line.
+std::string WorkText(const std::string& kind, const Work& work,
+                     const std::vector<SkipReason>& reasons);
+
+// "image_samples", "dropped_samples", "stopped", "seconds", and an object for each kind of work.
 nlohmann::ordered_json ToJson(const RenderSummary& summary);
 
 // A line for each kind of work.

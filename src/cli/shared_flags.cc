@@ -12,8 +12,9 @@ DEFINE_double(
     scale_to_albedo, 0.0,
     "scale the material so that its largest directional albedo, up to 85 degrees, is this; "
     "0: as measured");
-DEFINE_string(fit, "", 
-              "fitted network (.safetensors, or an NBRDF: .h5, fc1.npy); eval: or analytic model (.json)");
+DEFINE_string(
+    fit, "",
+    "fitted network (.safetensors, or an NBRDF: .h5, fc1.npy); eval: or analytic model (.json)");
 DEFINE_string(out, "", "file to write");
 DEFINE_bool(json, false, "print one JSON object");
 

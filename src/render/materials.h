@@ -30,6 +30,8 @@ class Materials {
   // one at a time.
   const PreparedMaterial* Reach(std::size_t material);
 
+  bool IsReached(std::size_t material) const { return slots_[material].reached; }
+
   // Throws what opening did, of the failed materials the first. Paths that reach a failed material
   // are to end, so that all others are followed as ever and the same materials fail each time.
   void ThrowIfFailed() const;

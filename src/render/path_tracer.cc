@@ -62,8 +62,9 @@ bool IsFinite(const Rgb& color) {
 // The paths of one call of Trace.
 class TilePaths {
  public:
-  TilePaths(const PathTracer& tracer, TileCounts* counts)
-      : t_(tracer), counts_(*counts), work_(counts->work) {}
+  // log: null, or what the materials are asked for goes there.
+  TilePaths(const PathTracer& tracer, TileCounts* counts, RequestLog* log)
+      : t_(tracer), counts_(*counts), work_(counts->work), log_(log) {}
 
   void Start(const SampleRange& range) {
     const int image_width = t_.scene_.film.width;
@@ -103,6 +104,7 @@ class TilePaths {
   }
 
   void Deposit(std::span<PixelSum> pixels) {
+    if (log_) EndLog();
     for (const Path& path : paths_) {
       if (IsFinite(path.radiance)) {
         pixels[path.pixel].Add(path.radiance);
@@ -116,6 +118,12 @@ class TilePaths {
   double seconds_opening() const { return seconds_opening_; }
 
  private:
+  void EndLog() {
+    std::vector<Rgb> radiance;
+    for (const Path& path : paths_) radiance.push_back(path.radiance);
+    log_->EndPaths(radiance);
+  }
+
   // Of paths that haven't been reflected yet: adds the lights that they meet, keeps where they are
   // reflected.
   void FollowCameraRays(bool empty) {
@@ -287,12 +295,15 @@ class TilePaths {
     if (mis) sampler.Pdf(viewed_, pdfs_);
     for (std::size_t k = 0; k < lit_.size(); ++k) {
       const Lit& lit = lit_[k];
-      double weight = lit.pair.wi.z;
-      if (mis && lit.light.pdf > 0.0) weight *= PowerHeuristic(lit.light.pdf, pdfs_[k]);
+      const double weight =
+          mis && lit.light.pdf > 0.0 ? PowerHeuristic(lit.light.pdf, pdfs_[k]) : 1.0;
       Path& path = paths_[vertices[lit.vertex].path];
+      Rgb arriving;
       for (int c = 0; c < 3; ++c) {
-        path.radiance[c] += path.throughput[c] * values_[k][c] * weight * lit.light.weight[c];
+        arriving[c] = path.throughput[c] * weight * lit.light.weight[c];
+        path.radiance[c] += values_[k][c] * lit.pair.wi.z * arriving[c];
       }
+      if (log_) log_->AddLight(vertices[lit.vertex].material, lit.pair, values_[k], arriving);
     }
   }
 
@@ -307,6 +318,9 @@ class TilePaths {
       if (!IsFinite(path.throughput)) {
         path.radiance.fill(std::numeric_limits<double>::quiet_NaN());  // dropped later
       } else if (Survives(&path)) {
+        if (log_) {
+          log_->GoOn(i, vertices[onward.vertex].material, onward.pair, value, path.radiance);
+        }
         Continue(i, onward.ray, onward.arrival, &next_);
       }
     }
@@ -355,6 +369,7 @@ class TilePaths {
   const PathTracer& t_;
   TileCounts& counts_;
   RenderWork& work_;
+  RequestLog* log_;
   double seconds_opening_ = 0.0;
   int bounce_ = 0;  // reflections before those under way
   std::vector<Path> paths_;
@@ -380,10 +395,10 @@ PathTracer::PathTracer(const Scene& scene, const PinholeCamera& camera, const Ge
       materials_(*materials),
       lights_(scene, options.estimator) {}
 
-void PathTracer::Trace(const SampleRange& range, std::span<PixelSum> pixels,
-                       TileCounts* counts) const {
+void PathTracer::Trace(const SampleRange& range, std::span<PixelSum> pixels, TileCounts* counts,
+                       RequestLog* log) const {
   const Timer timer;
-  TilePaths paths(*this, counts);
+  TilePaths paths(*this, counts, log);
   paths.Start(range);
   paths.Follow();
   paths.Deposit(pixels);

@@ -10,6 +10,7 @@
 #include "materials.h"
 #include "pbnbrdf/render/render.h"
 #include "pixels.h"
+#include "request_log.h"
 #include "tiles.h"
 
 namespace pbnbrdf {
@@ -32,9 +33,11 @@ class PathTracer {
   PathTracer(const Scene& scene, const PinholeCamera& camera, const Geometry& geometry,
              const RenderOptions& options, Materials* materials);
 
-  // Adds the samples to pixels, which are those of the whole image. May be called for several sets
-  // of blocks at once.
-  void Trace(const SampleRange& range, std::span<PixelSum> pixels, TileCounts* counts) const;
+  // Adds the samples to pixels, which are those of the whole image, and what materials are asked for
+  // to the log, if there is one. May be called for several sets of blocks at once, with logs of
+  // their own.
+  void Trace(const SampleRange& range, std::span<PixelSum> pixels, TileCounts* counts,
+             RequestLog* log = nullptr) const;
 
  private:
   friend class TilePaths;

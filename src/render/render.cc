@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 
+#include "arena.h"
 #include "materials.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
@@ -158,9 +159,7 @@ void ValidateRender(const RenderOptions& options) {
 Rendering Render(const Scene& scene, const MaterialOpener& open, const RenderOptions& options) {
   ValidateRender(options);
   const Timer timer;
-  const int most_threads = tbb::this_task_arena::max_concurrency();
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
-                                            : most_threads);
+  tbb::task_arena arena(ArenaThreads(options.threads));
   Materials materials(scene, open);
   if (!options.skip) arena.execute([&] { materials.OpenAll(); });
   Renderer renderer(scene, options, &materials);

@@ -1,0 +1,41 @@
+// demand.h: what a scene asks of its materials: which of them its image shows, how much, and at
+// which angles.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pbnbrdf/brdf/angle_distribution.h"
+#include "pbnbrdf/render/render.h"
+
+namespace pbnbrdf {
+
+struct DemandOptions {
+  int samples_per_pixel = 8;  // >= 1
+  // The film is made smaller, of the same proportions, if it has more pixels.
+  int most_pixels = 65536;  // >= 1
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: one for each core; the result is the same
+  int max_bounces = 64;
+};
+
+struct MaterialDemand {
+  bool referenced = false;  // by a shape
+  bool reached = false;     // by a path
+  // Of the luminance of all paths the part that the material has reflected, first or later: where
+  // light is reflected by several materials, the parts add up to more than 1.
+  double share = 0.0;
+  // Where; null if the share is 0. A pair of directions weighs W (1 + f cos_i): to first order the
+  // change of the image's luminance by a change of log(1 + f cos_i), what a fit minimises (eq. 6),
+  // W being the radiance that arrives, times what the path carries on to the camera, over the
+  // density that it was sampled with.
+  std::shared_ptr<const AngleDistribution> angles;
+};
+
+// Follows paths as Render does, with the materials as `open` gives them, opened when a path gets
+// there. One for each material of the scene. Throws Error as Render does.
+std::vector<MaterialDemand> MeasureDemand(const Scene& scene, const MaterialOpener& open,
+                                          const DemandOptions& options = {});
+
+}  // namespace pbnbrdf
