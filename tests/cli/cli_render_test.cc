@@ -62,6 +62,51 @@ TEST_F(CliRender, ShippedScenesRender) {
   }
 }
 
+TEST_F(CliRender, CountsWhatItLeavesOut) {
+  ASSERT_EQ(Run("fit --material=builtin:satin-gold --out=" + Path("a.safetensors") + kQuick).status,
+            0);
+  const std::string render =
+      "render" + Small("sphere.json") + "--samples_per_pixel=8 --max_bounces=2" +
+      " --material=surface=" + Path("a.safetensors") + " --summary=" + Path("summary.json");
+  const Result with = Run(render + " --out=" + Path("a.exr"));
+  ASSERT_EQ(with.status, 0) << with.err;
+  const json least = json::parse(ReadFile(Path("summary.json"), 1 << 20));
+  for (const char* text : {"\n  materials ", "\n  samples ", "\n  lanes ", "\n  rays ",
+                           "\n  brdf_values ", " below_horizon", " ended (saved about "}) {
+    EXPECT_THAT(with.out, HasSubstr(text));
+  }
+  ASSERT_EQ(Run(render + " --no_skip --quiet --out=" + Path("b.exr")).out, "");
+  const json most = json::parse(ReadFile(Path("summary.json"), 1 << 20));
+  // A network gives the same values in whatever batch it is asked for them.
+  EXPECT_EQ(ReadExr(Path("a.exr")).rgb, ReadExr(Path("b.exr")).rgb);
+  EXPECT_EQ(least["image_samples"], 16 * 12 * 8);
+  EXPECT_GT(least["brdf_values"]["skipped"]["below_horizon"], 0);
+  EXPECT_GT(least["brdf_values"]["seconds_saved_estimate"], 0.0);
+  for (const char* kind : {"materials", "rays", "brdf_values"}) {
+    EXPECT_EQ(least[kind]["needed"], most[kind]["needed"]) << kind;
+    EXPECT_EQ(least[kind]["needed"], least[kind]["done"]) << kind;
+    std::int64_t skipped = 0;
+    for (const auto& [reason, count] : least[kind]["skipped"].items()) {
+      skipped += std::int64_t(count);
+      EXPECT_EQ(most[kind]["skipped"][reason], 0) << kind << " " << reason;
+    }
+    EXPECT_EQ(std::int64_t(least[kind]["done"]) + skipped, most[kind]["done"]) << kind;
+  }
+}
+
+TEST_F(CliRender, StopsAtTheTargetError) {
+  const Result result =
+      Run("render" + Small("furnace.json") + "--samples_per_pixel=200 --target_error=0.1 " +
+          "--out=" + Path("a.exr") + " --summary=" + Path("summary.json"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json summary = json::parse(ReadFile(Path("summary.json"), 1 << 20));
+  const std::int64_t taken = summary["samples"]["done"];
+  EXPECT_LT(taken, 16 * 12 * 200);
+  EXPECT_EQ(taken + std::int64_t(summary["samples"]["skipped"]["converged"]), 16 * 12 * 200);
+  EXPECT_EQ(summary["image_samples"], taken);
+  EXPECT_THAT(ReadFile(Path("a.exr"), 1 << 20), HasSubstr("pbnbrdf:target_error"));
+}
+
 // No surface is brighter than its light if no albedo is above 1 (render_test.cc says why): a
 // network that is certified to conserve energy, in a box, over 64 reflections.
 TEST_F(CliRender, ACertifiedNetworkGainsNothingInTheCove) {
@@ -98,6 +143,8 @@ TEST_F(CliRender, Errors) {
   ExpectError(render + "--samples_per_pixel=0" + out, 2,
               "--samples_per_pixel = 0; must be 1 to 16777216");
   ExpectError(render + "--max_bounces=-1" + out, 2, "--max_bounces = -1; must be 0 to 100000");
+  ExpectError(render + "--target_error=-1" + out, 2,
+              "--target_error = -1; must be finite and >= 0");
   ExpectError(render + "--threads=-1" + out, 2, "--threads = -1; must be >= 0");
   ExpectError(render + "--exposure=0" + out, 2, "--exposure = 0; must be finite and > 0");
   ExpectError(render + "--estimator=mi" + out, 2,
@@ -105,6 +152,9 @@ TEST_F(CliRender, Errors) {
   ExpectError(render + "--material=surface" + out, 2, "of the form NAME=SOURCE");
   ExpectError(render + "--material='surface=ggx:alpha=0.3;surface=x'" + out, 2, "is there twice");
   ExpectError(render + "--png=" + Path("out") + out, 2, "is to be two outputs at once");
+  ExpectError(render + "--summary=" + Path("out") + out, 2, "is to be two outputs at once");
+  ExpectError(render + "--summary=" + Path("s.json") + " --out=-", 2,
+              "--summary: --out must be a file, too");
   ExpectError(render + "--material=surfac=ggx:alpha=0.3" + out, 1,
               "sphere.json: materials: there is no 'surfac'; did you mean 'surface'?");
   ExpectError(render + "--material=surface=none.binary" + out, 1,
