@@ -79,7 +79,7 @@ struct RenderSummary {
   std::int64_t samples = 0;          // paths in the image
   std::int64_t dropped_samples = 0;  // of radiance that isn't finite; not in the image
   RenderWork work;
-  double seconds = 0.0;
+  double seconds = 0.0;  // of Render, opening the materials included
 };
 
 struct Rendering {
@@ -91,10 +91,11 @@ struct Rendering {
 // Throws Error "RenderOptions::threads = -1; must be >= 0".
 void ValidateRender(const RenderOptions& options);
 
-// Opens the materials that paths get to (without `skip` all, first of all), and renders. Throws Error
-// if an option is out of its range or a material can't be opened ("materials.gold: ..."): when all
-// tiles have been gone through that were under way or to come in that pass, so that of several it
-// is always the same. The same arguments give the same bits.
+// Opens the materials that paths get to, when they do (without `skip` all, first of all), and
+// renders. Throws Error if an option is out of its range or a material can't be opened
+// ("materials.gold: ..."): at the end of the pass over the image in which a path got there, the
+// first of the scene's materials that failed, so that it is always the same one. A material that
+// only rare paths get to may fail late. The same arguments give the same bits.
 Rendering Render(const Scene& scene, const MaterialOpener& open, const RenderOptions& options = {});
 
 }  // namespace pbnbrdf
