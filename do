@@ -93,9 +93,9 @@ sanitize() {
 # experiments NAME [ARGUMENT ...]: a program of experiments/; its table and figure in build/results.
 experiments() {
   case ${1:-} in
-    ablation | collection | jacobian_cost | models | scaling | scene_fit | solver_comparison | stability) ;;
+    ablation | collection | jacobian_cost | models | picture | scaling | scene_fit | solver_comparison | stability) ;;
     *)
-      echo "usage: ./do experiments ablation | collection | jacobian_cost | models | scaling | scene_fit | solver_comparison | stability [--help | ARGUMENT ...]" >&2
+      echo "usage: ./do experiments ablation | collection | jacobian_cost | models | picture | scaling | scene_fit | solver_comparison | stability [--help | ARGUMENT ...]" >&2
       exit 2
       ;;
   esac

@@ -108,13 +108,18 @@ Plan MakePlan(const SceneMaterial& material, const MaterialDemand& demand,
   return plan;
 }
 
-OpenedMaterial OpenForRender(const std::string& source) { return {OpenBrdf(source)}; }
+std::vector<MaterialDemand> Demand(const Scene& scene, const DemandOptions& options) try {
+  const auto open = [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; };
+  return MeasureDemand(scene, open, options);
+} catch (const Error& error) {
+  Fail(FLAGS_scene, ": ", error.what());
+}
 
 class SceneFitter {
  public:
   SceneFitter(const Scene& scene, const FitFlags& flags) : flags_(flags) {
     const std::vector<MaterialDemand> demand =
-        MeasureDemand(scene, OpenForRender, {.seed = flags.problem.seed, .threads = FLAGS_threads});
+        Demand(scene, {.seed = flags.problem.seed, .threads = FLAGS_threads});
     demand_seconds_ = SecondsSince(start_);
     for (std::size_t i = 0; i < demand.size(); ++i) {
       plans_.push_back(MakePlan(scene.materials[i], demand[i], flags.problem));

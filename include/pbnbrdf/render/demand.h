@@ -26,10 +26,10 @@ struct MaterialDemand {
   // Of the luminance of all paths the part that the material has reflected, first or later: where
   // light is reflected by several materials, the parts add up to more than 1.
   double share = 0.0;
-  // Where; null if the share is 0. A pair of directions weighs W (1 + f cos_i): to first order the
-  // change of the image's luminance by a change of log(1 + f cos_i), what a fit minimises (eq. 6),
-  // W being the radiance that arrives, times what the path carries on to the camera, over the
-  // density that it was sampled with.
+  // Change of the image's mean luminance, to first order, by a change of log(1 + f cos_i), what a
+  // fit minimises (eq. 6), the same at all pairs of directions; W / (m^2 sr).
+  double sensitivity = 0.0;
+  // What each pair has a part in of that; null if it is 0.
   std::shared_ptr<const AngleDistribution> angles;
 };
 
