@@ -1,9 +1,11 @@
 // pbnbrdf compare: its output, its error map, its errors.
 #include "cli/cli_fixture.h"
 #include "image/images.h"
+#include "metrics/lpips_weights.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/metrics/image_metrics.h"
+#include "pbnbrdf/network/safetensors.h"
 
 namespace pbnbrdf {
 namespace {
@@ -72,7 +74,6 @@ TEST_F(Compare, Errors) {
   ExpectError("compare " + Path("test.exr"), 2, "the test image is missing");
   ExpectError(Command("test.exr", "test.exr") + " third.exr", 2, "'third.exr' is not a flag");
   ExpectError(Command("test.exr", "no.exr"), 1, "no.exr: no such file");
-  ExpectError(Command("test.exr", "test.exr") + " --lpips=weights.bin", 1, "LPIPS isn't supported");
   ExpectError(Command("test.exr", "test.exr") + " --error_map=" + Path("none/out"), 1,
               "cannot write: no folder");
 
@@ -86,6 +87,105 @@ TEST_F(Compare, Errors) {
   bad.rgb[0] = std::nanf("");
   WriteExr(Path("nan.exr"), bad);
   ExpectError(Command("reference.exr", "nan.exr"), 1, "nan.exr: R of pixel (0, 0) is nan");
+}
+
+class CompareLpips : public Compare {
+ protected:
+  CompareLpips() {
+    WriteExr(Path("large_reference.exr"), large_reference_);
+    WriteExr(Path("large_test.exr"), large_test_);
+  }
+
+  // As the package lpips names them, with what isn't needed.
+  static SafetensorsFile File(const LpipsWeights& weights) {
+    const char* names[] = {"net.slice1.0", "net.slice2.3", "net.slice3.6", "net.slice4.8",
+                           "net.slice5.10"};
+    SafetensorsFile file;
+    file.tensors["scaling_layer.shift"] = {{1, 3, 1, 1}, {-0.03, -0.088, -0.188}};
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const LpipsLayerShape& shape = kLpipsLayers[k];
+      const std::string name = names[k];
+      file.tensors[name + ".weight"] = {{shape.units, shape.inputs, shape.kernel, shape.kernel},
+                                        weights[k].kernels};
+      file.tensors[name + ".bias"] = {{shape.units}, weights[k].biases};
+      file.tensors[StrCat("lin", k, ".model.1.weight")] = {{1, shape.units, 1, 1}, weights[k].head};
+      file.tensors[StrCat("lins.", k, ".model.1.weight")] = {{1}, {0.0}};
+    }
+    return file;
+  }
+
+  void ExpectLpipsError(const std::string& file, const std::string& message) const {
+    ExpectError(large_ + " --lpips=" + Path(file), 1, Path(file) + ": " + message);
+  }
+
+  const Image large_reference_ = RandomImage(45, 33, 0.0, 2.0, 3),
+              large_test_ = RandomImage(45, 33, 0.0, 2.0, 4);
+  const LpipsWeights weights_ = RandomLpipsWeights(1);
+  const std::string large_ = Command("large_reference.exr", "large_test.exr");
+};
+
+TEST_F(CompareLpips, IsThatOfTheShownImages) {
+  WriteSafetensors(Path("alex.safetensors"), File(weights_));
+  const std::string command = large_ + " --lpips=" + Path("alex.safetensors");
+  const Result result = Run(command + " --json"), without = Run(large_ + " --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const double exposure = DisplayExposure(large_reference_);
+  auto expected = nlohmann::ordered_json::parse(without.out);
+  EXPECT_FALSE(expected.contains("lpips"));
+  expected["lpips"] = Lpips(DisplayImage(large_reference_, exposure),
+                            DisplayImage(large_test_, exposure), weights_);
+  EXPECT_GT(expected["lpips"], 0.01);
+  EXPECT_EQ(result.out, expected.dump(2) + "\n");
+  EXPECT_THAT(Run(command).out, HasSubstr("\nlpips "));
+  EXPECT_THAT(Run(large_).out, Not(HasSubstr("lpips")));
+}
+
+TEST_F(CompareLpips, Misuse) {
+  ExpectError(large_ + " --lpips", 2, "--lpips needs a value");
+  ExpectError(large_ + " --lpips=", 2, "--lpips= needs a file");
+  WriteSafetensors(Path("alex.safetensors"), File(weights_));
+  ExpectError(Command("reference.exr", "test.exr") + " --lpips=" + Path("alex.safetensors"), 1,
+              "reference.exr: 30 x 20 pixels; LPIPS needs at least 31 x 31");
+}
+
+TEST_F(CompareLpips, UnusableFiles) {
+  ExpectLpipsError("none.safetensors", "no such file");
+  ExpectLpipsError("test.exr", "not a safetensors file");
+
+  SafetensorsFile file = File(weights_);
+  const std::string bytes = SafetensorsBytes(file);
+  WriteBytes(Path("cut.safetensors"), bytes.substr(0, bytes.size() / 2));
+  ExpectLpipsError("cut.safetensors", "tensor ");
+  WriteBytes(Path("header.safetensors"), bytes.substr(0, 100));
+  ExpectLpipsError("header.safetensors", "not a safetensors file");
+
+  for (const auto& [name, tensor] : File(weights_).tensors) {
+    if (name.starts_with("lins.") || name.starts_with("scaling_layer")) continue;
+    file = File(weights_);
+    file.tensors.erase(name);
+    WriteSafetensors(Path("less.safetensors"), file);
+    ExpectLpipsError("less.safetensors", StrCat("no tensor ", name, " (", ShapeText(tensor.shape)));
+  }
+
+  file = File(weights_);
+  file.tensors["net.slice3.6.weight"].shape = {192, 384, 3, 3};
+  WriteSafetensors(Path("turned.safetensors"), file);
+  ExpectLpipsError(
+      "turned.safetensors",
+      "tensor net.slice3.6.weight: shape 192 x 384 x 3 x 3, expected 384 x 192 x 3 x 3");
+  file = File(weights_);
+  file.tensors["lin4.model.1.weight"].shape = {256};
+  WriteSafetensors(Path("flat.safetensors"), file);
+  ExpectLpipsError("flat.safetensors",
+                   "tensor lin4.model.1.weight: shape 256, expected 1 x 256 x 1 x 1");
+  file = File(weights_);
+  file.tensors["net.slice1.0.bias"].values[3] = std::nan("");
+  WriteSafetensors(Path("nan.safetensors"), file);
+  ExpectLpipsError("nan.safetensors", "tensor net.slice1.0.bias: holds a value that is not finite");
+  file = File(weights_);
+  for (double& weight : file.tensors["net.slice2.3.weight"].values) weight *= 1e300;
+  WriteSafetensors(Path("huge.safetensors"), file);
+  ExpectLpipsError("huge.safetensors", "LPIPS isn't finite: ");
 }
 
 }  // namespace
