@@ -38,7 +38,12 @@ double AngleHistogram::Total() const {
 AngleDistribution::AngleDistribution(const AngleHistogram& histogram)
     : azimuths_(histogram.azimuths_) {
   double sum = 0.0;
-  for (double weight : histogram.weights_) sums_.push_back(sum += weight);
+  const std::size_t cells_of_theta_h = histogram.weights_.size() / kThetaH;
+  for (std::size_t cell = 0; cell < histogram.weights_.size(); ++cell) {
+    const double h = static_cast<double>(cell / cells_of_theta_h);
+    const double uniform = (std::pow(h + 1.0, 3) - std::pow(h, 3)) / std::pow(kThetaH, 3);
+    sums_.push_back(sum += std::sqrt(histogram.weights_[cell] * uniform));
+  }
   if (!(sum > 0.0)) Fail("a distribution of angles whose weights are all 0");
 }
 

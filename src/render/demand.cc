@@ -30,7 +30,7 @@ Film SmallFilm(const Film& film, int most_pixels) {
 
 // What the requests for a material add up to.
 struct Sum {
-  double luminance = 0.0;
+  double luminance = 0.0, sensitivity = 0.0;
   std::optional<AngleHistogram> histogram;  // from the first request on
 };
 
@@ -71,9 +71,8 @@ class DemandMeter {
       MaterialDemand& material = (*demand)[i];
       material.reached = materials_.IsReached(i);
       if (image > 0.0) material.share = sums_[i].luminance / image;
-      const double weight = sums_[i].histogram ? sums_[i].histogram->Total() : 0.0;
-      if (!(weight > 0.0)) continue;
-      material.sensitivity = weight / samples;
+      if (samples > 0.0) material.sensitivity = sums_[i].sensitivity / samples;
+      if (!sums_[i].histogram || !(sums_[i].histogram->Total() > 0.0)) continue;
       material.angles = std::make_shared<const AngleDistribution>(*sums_[i].histogram);
     }
   }
@@ -92,7 +91,8 @@ class DemandMeter {
       Sum& sum = sums_[material];
       if (!sum.histogram) sum.histogram.emplace(materials_.Reach(material)->brdf->IsIsotropic());
       sum.luminance += request.luminance;
-      sum.histogram->Add(request.pair, request.weight);
+      sum.sensitivity += request.sensitivity;
+      sum.histogram->Add(request.pair, std::sqrt(request.luminance * request.sensitivity));
     }
   }
 

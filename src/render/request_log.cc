@@ -18,8 +18,8 @@ void RequestLog::AddLight(int material, const DirectionPair& pair, const Rgb& va
 }
 
 void RequestLog::Keep(const Request& request) {
-  const bool finite = std::isfinite(request.luminance) && std::isfinite(request.weight);
-  if (finite && request.weight > 0.0) requests_.push_back(request);
+  const bool finite = std::isfinite(request.luminance) && std::isfinite(request.sensitivity);
+  if (finite && request.sensitivity > 0.0) requests_.push_back(request);
 }
 
 void RequestLog::GoOn(std::size_t path, int material, const DirectionPair& pair, const Rgb& value,

@@ -12,8 +12,8 @@ namespace pbnbrdf {
 struct Request {
   int material;
   DirectionPair pair;
-  double luminance;  // that came to the path through this reflection
-  double weight;     // change of luminance by a change of log(1 + f cos_i), to first order
+  double luminance;    // that came to the path through this reflection
+  double sensitivity;  // change of luminance by a change of log(1 + f cos_i), to first order
 };
 
 // Of the paths of one call of PathTracer::Trace.
@@ -32,7 +32,7 @@ class RequestLog {
   void EndPaths(std::span<const Rgb> radiance);
 
  private:
-  // Unless it has no weight, or a path of it is to be dropped.
+  // Unless nothing depends on it, or its path is to be dropped.
   void Keep(const Request& request);
 
   struct Onward {

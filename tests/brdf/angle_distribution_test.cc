@@ -37,24 +37,32 @@ TEST(AngleDistribution, DrawsFromTheCellsThatHaveWeight) {
   }
 }
 
-TEST(AngleDistribution, DrawsInProportionToTheWeights) {
+// Cells of theta_h end at (pi/2) (i/32)^3: those of 0.4 and 0.41 are one, that of 1.1 is wider.
+TEST(AngleDistribution, DrawsByTheRootOfTheWeights) {
   AngleHistogram histogram(true);
   const auto at = [](double theta_h) { return FromAngles({theta_h, 0.3, 1.0}); };
-  histogram.Add(at(0.01), 1.0);
+  histogram.Add(at(0.40), 0.25);
+  histogram.Add(at(0.41), 0.75);
   histogram.Add(at(0.6), 0.0);
-  histogram.Add(at(1.1), 3.0);
-  EXPECT_EQ(histogram.Total(), 4.0);
+  histogram.Add(at(1.1), 9.0);
+  EXPECT_EQ(histogram.Total(), 10.0);
+  const auto width = [](double theta_h) {
+    const double i = std::floor(32.0 * std::cbrt(theta_h / (kPi / 2)));
+    return std::pow(i + 1.0, 3) - std::pow(i, 3);
+  };
+  ASSERT_EQ(width(0.40), width(0.41));
+  const double expected = 1.0 / (1.0 + std::sqrt(9.0 * width(1.1) / width(0.4)));
   const AngleDistribution distribution(histogram);
   std::mt19937_64 random(2);
   int near = 0, far = 0;
   constexpr int kDraws = 40000;
   for (int k = 0; k < kDraws; ++k) {
     const double theta_h = distribution.Draw(Numbers(&random)).theta_h;
-    near += theta_h < 0.1;
-    far += theta_h > 0.9;
+    near += std::abs(theta_h - 0.4) < 0.1;
+    far += std::abs(theta_h - 1.1) < 0.15;
   }
   EXPECT_EQ(near + far, kDraws);
-  EXPECT_NEAR(near / double(kDraws), 0.25, 4 * std::sqrt(0.25 * 0.75 / kDraws));
+  EXPECT_NEAR(near / double(kDraws), expected, 4 * std::sqrt(expected * (1 - expected) / kDraws));
 }
 
 TEST(AngleDistribution, ExtremeNumbersStayInCellsWithWeight) {

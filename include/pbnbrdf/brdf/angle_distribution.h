@@ -29,8 +29,11 @@ class AngleHistogram {
   std::vector<double> weights_;
 };
 
-// Angles at random: a cell by its weight, and within it uniform in (theta_h^(1/3), theta_d, phi_d,
-// phi_h), with phi_h = 0 of isotropic materials.
+// Angles at random, half way from uniform angles to the weights: a cell is drawn in proportion to
+// sqrt(w u), w its weight and u its probability by uniform (theta_h, theta_d, phi_d, phi_h). Fits to
+// samples drawn by the weights themselves go astray wherever these are small. Cells of no weight are
+// left out. Within a cell uniform in (theta_h^(1/3), theta_d, phi_d, phi_h), with phi_h = 0 of isotropic
+// materials.
 class AngleDistribution {
  public:
   // Throws Error if all weights are 0.

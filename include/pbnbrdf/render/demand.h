@@ -29,7 +29,9 @@ struct MaterialDemand {
   // Change of the image's mean luminance, to first order, by a change of log(1 + f cos_i), what a
   // fit minimises (eq. 6), the same at all pairs of directions; W / (m^2 sr).
   double sensitivity = 0.0;
-  // What each pair has a part in of that; null if it is 0.
+  // Where; null if the share is 0. A pair of directions weighs the geometric mean of its parts in
+  // the share and in the sensitivity: errors of fits lie between the same everywhere in log(1 + f
+  // cos_i) and in proportion to f.
   std::shared_ptr<const AngleDistribution> angles;
 };
 
