@@ -21,7 +21,7 @@ DEFINE_string(scenes, "problems/scenes/sphere.json,problems/scenes/gallery.json"
               "scene files, separated by commas");
 DEFINE_string(environment, "", "OpenEXR file in place of the scenes' own environment");
 DEFINE_string(sgd, "", "CSV of SGD parameters, for materials sgd:NAME");
-DEFINE_uint64(samples, 6000,
+DEFINE_uint64(samples, 12000,
               "training samples of fits for all angles; fits for the scene: a third");
 DEFINE_string(seeds, "1,2,3", "seeds of the fits");
 DEFINE_int32(film_width, 192, "of the images, in place of the scenes' own");
@@ -46,11 +46,15 @@ are rendered along the same paths, so that they differ by the network alone. Eac
 scene_fit.csv as soon as it is done; scene_fit.md has the medians of the seeds.
 )";
 
-constexpr const char* kDefaultMaterials[] = {
-    "builtin:satin-gold",        "builtin:red-satin-plastic",      "builtin:blue-plastic",
-    "builtin:brushed-copper",    "builtin:ivory-computer-plastic", "builtin:rough-iron",
-    "builtin:polished-chromium", "builtin:glossy-grey-paper",      "builtin:white-sand",
-    "builtin:varnished-plywood"};
+constexpr const char* kDefaultMaterials[] = {"builtin:satin-gold",
+                                             "builtin:red-satin-plastic",
+                                             "builtin:blue-plastic",
+                                             "builtin:polished-chromium",
+                                             "builtin:ivory-computer-plastic",
+                                             "builtin:rough-iron",
+                                             "builtin:glossy-grey-paper",
+                                             "builtin:white-sand",
+                                             "builtin:varnished-plywood"};
 
 // What a fit draws its samples from, and what part of --samples.
 struct Method {
@@ -61,7 +65,6 @@ struct Method {
 };
 
 constexpr Method kMethods[] = {{"uniform", Sampling::kUniform, false, 1},
-                               {"highlight", Sampling::kHighlight, false, 1},
                                {"uniform, a third", Sampling::kUniform, false, 3},
                                {"highlight, a third", Sampling::kHighlight, false, 3},
                                {"for the scene, a third", Sampling::kHighlight, true, 3}};
