@@ -20,7 +20,7 @@
 
 DECLARE_string(encoding);
 DECLARE_string(init);
-DEFINE_string(summary, "", "write measures, cost, time and the problem to this JSON file");
+DEFINE_string(summary, "", "write what was measured and done to this JSON file");
 DEFINE_string(trace, "", "write a row for each iteration to this CSV");
 DEFINE_bool(quiet, false, "print nothing");
 

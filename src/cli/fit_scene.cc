@@ -132,7 +132,9 @@ class SceneFitter {
       if (plan.skip_reason && !FLAGS_no_skip) {
         ++work_.Skipped(*plan.skip_reason);
         fits_.push_back(PlanJson(plan));
-      } else if (!Interrupted()) {
+      } else if (Interrupted()) {
+        fits_.push_back(PlanJson(plan));
+      } else {
         Fit(plan);
       }
     }

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "luminance.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-double Luminance(const float* rgb) {  // ITU-R BT.709
-  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-}
 
 // The interval of running sums that u falls in, and where, in [0, 1): intervals of no length are
 // never chosen, nor is what rounding leaves beyond the last.
@@ -46,7 +43,7 @@ EnvironmentMap::EnvironmentMap(Image radiance, double rotation, double scale)
   for (int y = 0; y < height; ++y) {
     double row = 0.0;
     for (int x = 0; x < width; ++x) {
-      row += Luminance(radiance_.pixel(x, y)) * (cos_theta_[y] - cos_theta_[y + 1]);
+      row += Luminance(RadianceOf({x, y})) * (cos_theta_[y] - cos_theta_[y + 1]);
       columns_.push_back(row);
     }
     total_ += row;
@@ -83,7 +80,7 @@ Rgb EnvironmentMap::RadianceOf(const Texel& texel) const {
 double EnvironmentMap::Density(const Texel& texel) const {
   // The probability of the texel over its solid angle; the latter's height cancels.
   const double d_phi = 2.0 * kPi / radiance_.width;
-  return Luminance(radiance_.pixel(texel.x, texel.y)) / (total_ * d_phi);
+  return Luminance(RadianceOf(texel)) / (total_ * d_phi);
 }
 
 double EnvironmentMap::Pdf(const Vec3& direction) const {

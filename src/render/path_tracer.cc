@@ -402,9 +402,7 @@ void PathTracer::Trace(const SampleRange& range, std::span<PixelSum> pixels, Til
   paths.Start(range);
   paths.Follow();
   paths.Deposit(pixels);
-  const double seconds = timer.Seconds() - paths.seconds_opening();
-  counts->work.samples.seconds += seconds;
-  counts->work.lanes.seconds += seconds;
+  counts->work.samples.seconds += timer.Seconds() - paths.seconds_opening();
 }
 
 }  // namespace pbnbrdf

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luminance.h"
+
 namespace pbnbrdf {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double kDark = 0.01;  // pixels of less radiance needn't be as exact
 
 void PixelSum::Add(const Rgb& sample) {
   for (int c = 0; c < 3; ++c) radiance[c] += sample[c];
-  const double y = 0.2126 * sample[0] + 0.7152 * sample[1] + 0.0722 * sample[2];  // BT.709
+  const double y = Luminance(sample);
   luminance += y;
   luminance_squares += y * y;
   ++samples;

@@ -52,7 +52,8 @@ TEST_F(CliRender, TakesAnotherEnvironmentAndOtherMaterials) {
 }
 
 TEST_F(CliRender, ShippedScenesRender) {
-  for (const char* name : {"sphere.json", "furnace.json", "cove.json", "gallery.json"}) {
+  for (const char* name : {"sphere.json", "furnace.json", "cove.json", "gallery.json",
+                           "one_of_many.json"}) {
     const Result result =
         Run("render" + Small(name) + "--samples_per_pixel=2 --out=" + Path("a.exr"));
     EXPECT_EQ(result.status, 0) << name << ": " << result.err;

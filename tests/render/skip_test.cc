@@ -44,7 +44,7 @@ RenderWork ExpectSameWithoutSkip(const Scene& scene, RenderOptions options) {
 }
 
 TEST(Skip, ShippedScenesKeepTheirBits) {
-  for (const char* name : {"sphere", "furnace", "cove", "gallery"}) {
+  for (const char* name : {"sphere", "furnace", "cove", "gallery", "one_of_many"}) {
     SCOPED_TRACE(name);
     Scene scene = ReadScene(StrCat(PBNBRDF_PROBLEMS, "/scenes/", name, ".json"));
     scene.film = {40, 36};

@@ -58,7 +58,7 @@ struct RenderWork {
   // Steps of paths: one for the camera ray and one for each reflection, of a path that goes on.
   // `ended` counts those that a wavefront without compaction would drag along: paths that have
   // ended while others of the same call of PathTracer::Trace go on. It is a matter of comparison:
-  // ended paths always leave, with RenderOptions::skip or without.
+  // ended paths always leave, with RenderOptions::skip or without, and no time is put down to lanes.
   Work lanes;
   Work rays;         // camera, shadow, and reflected: below_horizon and unlit (shadow), empty_tiles
   Work brdf_values;  // below_horizon, occluded, unlit
