@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
-#include <optional>
 
 #include "comparison.h"
 #include "default_materials.h"
@@ -21,6 +20,8 @@ DEFINE_string(scenes, "problems/scenes/sphere.json,problems/scenes/gallery.json"
               "scene files, separated by commas");
 DEFINE_string(environment, "", "OpenEXR file in place of the scenes' own environment");
 DEFINE_string(sgd, "", "CSV of SGD parameters, for materials sgd:NAME");
+DEFINE_string(slot, "satin-gold",
+              "the material that others take the place of in scenes that haven't got them");
 DEFINE_uint64(samples, 12000,
               "training samples of fits for all angles; fits for the scene: a third");
 DEFINE_string(seeds, "1,2,3", "seeds of the fits");
@@ -40,10 +41,10 @@ constexpr char kUsage[] =
   scene_fit --out_dir=results
   scene_fit --out_dir=results --scenes=problems/scenes/sphere.json --sgd=parameters.csv sgd:chrome-steel
 
-The arguments are materials. In a scene of one material each takes its place; of other scenes those
-are fitted that the scene has. Images show one network, and all other materials as they are. They
-are rendered along the same paths, so that they differ by the network alone. Each fit is a row of
-scene_fit.csv as soon as it is done; scene_fit.md has the medians of the seeds.
+The arguments are materials. Each is fitted in each scene: where the scene has it, or else in the
+place of --slot, or of the only material. Images show one network, and all other materials as they
+are. They are rendered along the same paths, so that they differ by the network alone. Each fit is a
+row of scene_fit.csv as soon as it is done; scene_fit.md has the medians of the seeds.
 )";
 
 constexpr const char* kDefaultMaterials[] = {"builtin:satin-gold",
@@ -65,7 +66,6 @@ struct Method {
 };
 
 constexpr Method kMethods[] = {{"uniform", Sampling::kUniform, false, 1},
-                               {"uniform, a third", Sampling::kUniform, false, 3},
                                {"highlight, a third", Sampling::kHighlight, false, 3},
                                {"for the scene, a third", Sampling::kHighlight, true, 3}};
 constexpr std::size_t kUniform = 0, kForScene = std::size(kMethods) - 1;
@@ -150,13 +150,19 @@ Scene ReadSmallScene(const std::string& path) {
   return scene;
 }
 
-// Where the material goes; none: the scene hasn't got it.
-std::optional<std::size_t> SlotOf(const Scene& scene, const std::string& source) {
+// Where the material goes.
+std::size_t SlotOf(const Scene& scene, const std::string& source) {
   if (scene.materials.size() == 1) return 0;
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    if (scene.materials[i].source == source) return i;
+  const auto find = [&](auto has) {
+    return std::size_t(std::find_if(scene.materials.begin(), scene.materials.end(), has) -
+                       scene.materials.begin());
+  };
+  std::size_t slot = find([&](const SceneMaterial& m) { return m.source == source; });
+  if (slot == scene.materials.size()) {
+    slot = find([](const SceneMaterial& m) { return m.name == FLAGS_slot; });
   }
-  return std::nullopt;
+  if (slot == scene.materials.size()) Fail("slot: the scene has no material '", FLAGS_slot, "'");
+  return slot;
 }
 
 Row RunCase(const Case& one, const std::string& scene, const std::string& material, FitLog* log) {
@@ -224,12 +230,10 @@ void Run(const std::vector<std::string>& arguments) {
     const Scene scene = ReadSmallScene(path);
     const std::string name = std::filesystem::path(path).stem();
     for (const MaterialSource& material : materials) {
-      const std::optional<std::size_t> slot = SlotOf(scene, material.source);
-      if (!slot) continue;
-      rows.push_back(RunCase(Case(scene, *slot, material.source), name, material.name, &log));
+      const std::size_t slot = SlotOf(scene, material.source);
+      rows.push_back(RunCase(Case(scene, slot, material.source), name, material.name, &log));
     }
   }
-  if (rows.empty()) Fail("no scene has any of the materials");
   WriteReport("scene_fit",
               StrCat(FLAGS_samples, " training samples, or a third; seeds ", FLAGS_seeds,
                      "; images ", FLAGS_film_width, " pixels wide, ", FLAGS_samples_per_pixel,
