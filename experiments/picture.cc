@@ -25,6 +25,7 @@ DEFINE_string(sgd, "", "CSV of SGD parameters, for materials sgd:NAME");
 DEFINE_int32(film_width, 256, "of each image");
 DEFINE_int32(samples_per_pixel, 256, "of each image");
 DEFINE_int32(epochs, 100, "of the published recipe");
+DEFINE_double(max_seconds, 60.0, "of our fits");
 DEFINE_double(largest_flip, 0.2, "what the error maps show as white");
 DEFINE_uint64(seed, 1, "of the fits");
 DEFINE_int32(threads, 0, "0: one for each core");
@@ -74,6 +75,7 @@ FittedNetwork FitOurs(const Brdf& material) {
   problem.encoding = EncodingFor(material);
   problem.seed = FLAGS_seed;
   FitOptions options;
+  options.max_seconds = FLAGS_max_seconds;
   options.threads = FLAGS_threads;
   const Fit fit = FitBrdf(material, problem, options);
   return {fit.network, fit.summary.seconds};

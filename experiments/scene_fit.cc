@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <map>
 
 #include "comparison.h"
 #include "default_materials.h"
@@ -66,19 +67,33 @@ struct Method {
 };
 
 constexpr Method kMethods[] = {{"uniform", Sampling::kUniform, false, 1},
-                               {"highlight, a third", Sampling::kHighlight, false, 3},
-                               {"for the scene, a third", Sampling::kHighlight, true, 3}};
+                               {"highlight / 3", Sampling::kHighlight, false, 3},
+                               {"scene / 3", Sampling::kHighlight, true, 3}};
 constexpr std::size_t kUniform = 0, kForScene = std::size(kMethods) - 1;
 
 struct ImageError {
   double rmse, flip;
 };
 
+// How paths leave the materials of a scene, by their source; of anisotropic ones it takes a second to
+// find out.
+using Proposals = std::map<std::string, LobeProposal>;
+
+Proposals ProposalsOf(const Scene& scene) {
+  Proposals proposals;
+  for (const SceneMaterial& material : scene.materials) {
+    proposals[material.source] = FitLobeProposal(*OpenBrdf(material.source));
+  }
+  return proposals;
+}
+
 // A material in a scene, as it is and as networks have it.
 class Case {
  public:
-  Case(Scene scene, std::size_t slot, const std::string& source)
+  // The proposals must outlive this.
+  Case(Scene scene, const Proposals& proposals, std::size_t slot, const std::string& source)
       : scene_(std::move(scene)),
+        proposals_(proposals),
         slot_(slot),
         truth_(OpenBrdf(source)),
         proposal_(FitLobeProposal(*truth_)) {
@@ -116,7 +131,7 @@ class Case {
   template <typename Open>
   MaterialOpener Opener(Open open) const {
     return [this, open](const std::string& source) -> OpenedMaterial {
-      if (source != kSlot) return {OpenBrdf(source)};
+      if (source != kSlot) return {OpenBrdf(source), proposals_.at(source)};
       return {open(), proposal_};
     };
   }
@@ -129,6 +144,7 @@ class Case {
   }
 
   Scene scene_;
+  const Proposals& proposals_;
   std::size_t slot_;
   std::unique_ptr<Brdf> truth_;
   LobeProposal proposal_;
@@ -228,10 +244,12 @@ void Run(const std::vector<std::string>& arguments) {
   std::vector<Row> rows;
   for (const std::string& path : Split(FLAGS_scenes, ',')) {
     const Scene scene = ReadSmallScene(path);
+    const Proposals proposals = ProposalsOf(scene);
     const std::string name = std::filesystem::path(path).stem();
     for (const MaterialSource& material : materials) {
       const std::size_t slot = SlotOf(scene, material.source);
-      rows.push_back(RunCase(Case(scene, slot, material.source), name, material.name, &log));
+      rows.push_back(
+          RunCase(Case(scene, proposals, slot, material.source), name, material.name, &log));
     }
   }
   WriteReport("scene_fit",

@@ -4,6 +4,7 @@
 
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
+#include "pbnbrdf/image/png.h"
 #include "process.h"
 #include "test_util.h"
 
@@ -293,6 +294,67 @@ TEST(Models, RejectsWhatItCantDo) {
   }
 }
 
+const std::vector<std::string> kTinyImages = {"--film_width=16", "--samples_per_pixel=2",
+                                              "--max_seconds=0.1", "--threads=1"};
+
+TEST(SceneFit, WritesEveryFitAndTheTable) {
+  const TemporaryFolder folder;
+  std::vector<std::string> flags = kTinyImages;
+  flags.insert(flags.end(),
+               {"--scenes=" PBNBRDF_SCENES "/sphere.json," PBNBRDF_SCENES "/gallery.json",
+                "--samples=300", "--seeds=1,2", "builtin:blue-plastic", "lambert:rho_d=0.5"});
+  const ProgramResult run = RunIn(folder, "scene_fit", flags);
+  ASSERT_EQ(run.status, 0);
+  const auto rows =
+      ReadRows(folder / "results/scene_fit.csv", "scene,material,method,samples,seed,rmse,flip");
+  ASSERT_EQ(rows.size(), 2u * 2u * 3u * 2u);
+  std::set<std::string> images;
+  for (const auto& row : rows) {
+    EXPECT_GT(ParseNumber("rmse", row[5]), 0.0);
+    images.insert(row[5]);
+  }
+  EXPECT_EQ(images.size(), rows.size());  // each fit has its own
+  for (const char* text :
+       {"| sphere ", "| gallery ", "| blue-plastic ", "**median**", "**worst**"}) {
+    EXPECT_THAT(run.output, HasSubstr(text));
+  }
+}
+
+TEST(SceneFit, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--samples=2", "--film_width=5", "--scenes=absent.json", "--seeds=a",
+                           "--slot=absent", "--scene_floor=2"}) {
+    std::vector<std::string> flags = kTinyImages;
+    flags.insert(flags.end(), {"--scenes=" PBNBRDF_SCENES "/gallery.json", "--samples=300", flag,
+                               "lambert:rho_d=0.5"});
+    EXPECT_EQ(RunIn(folder, "scene_fit", flags).status, 1) << flag;
+  }
+}
+
+TEST(Picture, WritesThePictureAndItsNumbers) {
+  const TemporaryFolder folder;
+  std::vector<std::string> flags = kTinyImages;
+  flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", "--epochs=0",
+                             "builtin:satin-gold", "builtin:wall-plaster"});
+  const ProgramResult run = RunIn(folder, "picture", flags);
+  ASSERT_EQ(run.status, 0);
+  const Image picture = ReadPng(folder / "results/picture.png");
+  EXPECT_EQ(picture.width, 5 * 16);
+  EXPECT_EQ(picture.height, 2 * 16);
+  EXPECT_GT(picture.pixel(8, 8)[0], picture.pixel(8, 8)[2]);  // gold
+  const auto sum = [&](int panel) {
+    float all = 0.0f;
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 16 * panel; x < 16 * (panel + 1); ++x) all += picture.pixel(x, y)[0];
+    }
+    return all;
+  };
+  EXPECT_GT(sum(3), sum(4));  // errors of a network that hasn't been trained, and of ours
+  for (const char* text : {"| satin-gold ", "| published recipe ", "| ours "}) {
+    EXPECT_THAT(run.output, HasSubstr(text));
+  }
+}
+
 TEST(JacobianCost, WritesTableAndFigure) {
   const TemporaryFolder folder;
   const ProgramResult run =
@@ -375,7 +437,8 @@ TEST(Experiments, HelpNamesTheFlags) {
   const TemporaryFolder folder;
   for (const auto& [program, flag] :
        {std::pair("ablation", "--chromaticity_weights"), std::pair("jacobian_cost", "--hidden"),
-        std::pair("models", "--lobes"), std::pair("scaling", "--hidden"),
+        std::pair("models", "--lobes"), std::pair("picture", "--epochs"),
+        std::pair("scaling", "--hidden"), std::pair("scene_fit", "--scenes"),
         std::pair("solver_comparison", "--hidden"), std::pair("stability", "--runs")}) {
     const ProgramResult run = RunIn(folder, program, {"--help"});
     EXPECT_EQ(run.status, 0);
