@@ -75,23 +75,14 @@ struct ImageError {
   double rmse, flip;
 };
 
-// How paths leave the materials of a scene, by their source; of anisotropic ones it takes a second to
-// find out.
+// How paths leave materials, by their source: of anisotropic ones it takes a second to find out.
 using Proposals = std::map<std::string, LobeProposal>;
-
-Proposals ProposalsOf(const Scene& scene) {
-  Proposals proposals;
-  for (const SceneMaterial& material : scene.materials) {
-    proposals[material.source] = FitLobeProposal(*OpenBrdf(material.source));
-  }
-  return proposals;
-}
 
 // A material in a scene, as it is and as networks have it.
 class Case {
  public:
-  // The proposals must outlive this.
-  Case(Scene scene, const Proposals& proposals, std::size_t slot, const std::string& source)
+  // The proposals, which grow with the materials that paths get to, must outlive this.
+  Case(Scene scene, Proposals& proposals, std::size_t slot, const std::string& source)
       : scene_(std::move(scene)),
         proposals_(proposals),
         slot_(slot),
@@ -131,8 +122,13 @@ class Case {
   template <typename Open>
   MaterialOpener Opener(Open open) const {
     return [this, open](const std::string& source) -> OpenedMaterial {
-      if (source != kSlot) return {OpenBrdf(source), proposals_.at(source)};
-      return {open(), proposal_};
+      if (source == kSlot) return {open(), proposal_};
+      std::unique_ptr<Brdf> brdf = OpenBrdf(source);
+      auto known = proposals_.find(source);
+      if (known == proposals_.end()) {
+        known = proposals_.emplace(source, FitLobeProposal(*brdf)).first;
+      }
+      return {std::move(brdf), known->second};
     };
   }
 
@@ -144,7 +140,7 @@ class Case {
   }
 
   Scene scene_;
-  const Proposals& proposals_;
+  Proposals& proposals_;
   std::size_t slot_;
   std::unique_ptr<Brdf> truth_;
   LobeProposal proposal_;
@@ -244,7 +240,7 @@ void Run(const std::vector<std::string>& arguments) {
   std::vector<Row> rows;
   for (const std::string& path : Split(FLAGS_scenes, ',')) {
     const Scene scene = ReadSmallScene(path);
-    const Proposals proposals = ProposalsOf(scene);
+    Proposals proposals;
     const std::string name = std::filesystem::path(path).stem();
     for (const MaterialSource& material : materials) {
       const std::size_t slot = SlotOf(scene, material.source);

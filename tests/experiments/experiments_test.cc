@@ -301,7 +301,7 @@ TEST(SceneFit, WritesEveryFitAndTheTable) {
   const TemporaryFolder folder;
   std::vector<std::string> flags = kTinyImages;
   flags.insert(flags.end(),
-               {"--scenes=" PBNBRDF_SCENES "/sphere.json," PBNBRDF_SCENES "/gallery.json",
+               {"--scenes=" PBNBRDF_SCENES "/sphere.json," PBNBRDF_SCENES "/one_of_many.json",
                 "--samples=300", "--seeds=1,2", "builtin:blue-plastic", "lambert:rho_d=0.5"});
   const ProgramResult run = RunIn(folder, "scene_fit", flags);
   ASSERT_EQ(run.status, 0);
@@ -315,7 +315,7 @@ TEST(SceneFit, WritesEveryFitAndTheTable) {
   }
   EXPECT_EQ(images.size(), rows.size());  // each fit has its own
   for (const char* text :
-       {"| sphere ", "| gallery ", "| blue-plastic ", "**median**", "**worst**"}) {
+       {"| sphere ", "| one_of_many ", "| blue-plastic ", "**median**", "**worst**"}) {
     EXPECT_THAT(run.output, HasSubstr(text));
   }
 }
@@ -325,8 +325,8 @@ TEST(SceneFit, RejectsWhatItCantDo) {
   for (const char* flag : {"--samples=2", "--film_width=5", "--scenes=absent.json", "--seeds=a",
                            "--slot=absent", "--scene_floor=2"}) {
     std::vector<std::string> flags = kTinyImages;
-    flags.insert(flags.end(), {"--scenes=" PBNBRDF_SCENES "/gallery.json", "--samples=300", flag,
-                               "lambert:rho_d=0.5"});
+    flags.insert(flags.end(), {"--scenes=" PBNBRDF_SCENES "/one_of_many.json", "--samples=300",
+                               flag, "lambert:rho_d=0.5"});
     EXPECT_EQ(RunIn(folder, "scene_fit", flags).status, 1) << flag;
   }
 }
