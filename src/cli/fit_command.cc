@@ -158,9 +158,13 @@ Command FitCommand() {
       "it\n"
       "takes sampling, samples [6000], seed, loss_scale, starts [12], max_iterations [100] and\n"
       "function_tolerance [1e-05].\n"
-      "\nWith --scene the materials of a scene are fitted, each where the scene asks for it; "
-      "render\n"
-      "--fits=DIR takes them. Ctrl-C keeps the networks so far.\n"
+      "\nWith --scene a few paths find out which materials the scene shows, and from where. Each "
+      "is\n"
+      "fitted, by the flags above, to OUT_DIR/NAME.safetensors: render --fits=OUT_DIR takes them. "
+      "What\n"
+      "hardly changes the image (by less than a hundredth of a change of log(1 + f cos)) gets\n"
+      "--hidden=8,8 and 6000 samples at most, what no path gets to nothing. summary.json, or\n"
+      "--summary, says for each what was needed and why. Ctrl-C keeps the networks so far.\n"
       "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
   command.flags = {MaterialFlagsAnd({"out", "summary", "trace", "quiet", "threads"})};
   for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);

@@ -43,7 +43,7 @@ constexpr std::uint64_t kMeasuredSeed = 1;
 
 const std::vector<SkipReason> kReasons = {SkipReason::kUnreferenced, SkipReason::kNotReached};
 
-// A material that has so little part in the image gets a network and samples to match.
+// A material whose sensitivity is below gets a network and samples to match.
 constexpr double kHardlyShown = 0.01;
 constexpr std::size_t kFewSamples = 6000;
 const std::vector<int> kSmallNetwork = {8, 8};
@@ -62,7 +62,7 @@ std::string InFolder(const std::string& file) {
 struct Plan {
   std::string name;
   FitSubject subject;
-  double share = 0.0;
+  double share = 0.0, sensitivity = 0.0;
   bool needed = false;
   std::optional<SkipReason> skip_reason;  // none: it is fitted
   std::string why;
@@ -92,6 +92,7 @@ Plan MakePlan(const SceneMaterial& material, const MaterialDemand& demand,
   plan.name = material.name;
   plan.subject = {material.source, material.scale_to_albedo, FlagsText()};
   plan.share = demand.share;
+  plan.sensitivity = demand.sensitivity;
   plan.needed = demand.reached;
   plan.problem = problem;
   if (!demand.reached) {
@@ -101,10 +102,10 @@ Plan MakePlan(const SceneMaterial& material, const MaterialDemand& demand,
   }
   plan.problem.asked = demand.angles;
   plan.why = StrCat("it reflects ", Percent(demand.share), " of the image's light");
-  if (demand.share >= kHardlyShown) return plan;
+  if (demand.sensitivity >= kHardlyShown) return plan;
   plan.problem.hidden = kSmallNetwork;
   plan.problem.samples = std::min(problem.samples, kFewSamples);
-  plan.why += ", hardly any: a small network and few samples";
+  plan.why += " and hardly changes it: a small network and few samples";
   return plan;
 }
 
@@ -158,8 +159,9 @@ class SceneFitter {
     nlohmann::ordered_json skipped;
     if (plan.skip_reason && !FLAGS_no_skip) skipped = NameOf(kSkipReasons, *plan.skip_reason);
     return {{"material", plan.name}, {"source", plan.subject.material},
-            {"share", plan.share},   {"needed", plan.needed},
-            {"skipped", skipped},    {"why", plan.why}};
+            {"share", plan.share},   {"sensitivity", plan.sensitivity},
+            {"needed", plan.needed}, {"skipped", skipped},
+            {"why", plan.why}};
   }
 
   void Fit(const Plan& plan) try {

@@ -62,16 +62,15 @@ class DemandMeter {
 
   // Of each material, those that no path reached excepted.
   void Finish(std::vector<MaterialDemand>* demand) const {
-    double image = 0.0, samples = 0.0;
-    for (const PixelSum& pixel : pixels_) {
-      image += pixel.luminance;
-      samples += double(pixel.samples);
-    }
+    double image = 0.0;
+    for (const PixelSum& pixel : pixels_) image += pixel.luminance;
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       MaterialDemand& material = (*demand)[i];
       material.reached = materials_.IsReached(i);
-      if (image > 0.0) material.share = sums_[i].luminance / image;
-      if (samples > 0.0) material.sensitivity = sums_[i].sensitivity / samples;
+      if (image > 0.0) {
+        material.share = sums_[i].luminance / image;
+        material.sensitivity = sums_[i].sensitivity / image;
+      }
       if (!sums_[i].histogram || !(sums_[i].histogram->Total() > 0.0)) continue;
       material.angles = std::make_shared<const AngleDistribution>(*sums_[i].histogram);
     }

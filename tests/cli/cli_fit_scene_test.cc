@@ -34,7 +34,7 @@ class CliFitScene : public Cli {
                {"transform", {{{"rotate", {{"axis", {1, 0, 0}}, {"degrees", -90}}}}}}},
               ball(0, 1, 0, 1, "gold"),
               ball(0, -2, 0, 1, "copper"),
-              ball(2, 0.1, 0, 0.1, "dot")}},
+              ball(2, 0.1, 0, 0.06, "dot")}},
             {"lights", {{{"type", "environment"}, {"radiance", 0.5}}}}};
   }
 
@@ -67,7 +67,8 @@ TEST_F(CliFitScene, FitsWhatTheSceneShows) {
   }
   EXPECT_EQ(fits["floor"]["scale_to_albedo"], 0.5);
   EXPECT_EQ(fits["dot"]["hidden"], json({8, 8}));
-  EXPECT_LT(fits["dot"]["share"], 0.01);
+  EXPECT_LT(fits["dot"]["sensitivity"], 0.01);
+  EXPECT_GT(fits["gold"]["sensitivity"], 0.05);
   EXPECT_THAT(fits["dot"]["why"], HasSubstr("small network"));
   EXPECT_EQ(fits["copper"]["skipped"], "not_reached");
   EXPECT_EQ(fits["paper"]["skipped"], "unreferenced");

@@ -26,8 +26,9 @@ struct MaterialDemand {
   // Of the luminance of all paths the part that the material has reflected, first or later: where
   // light is reflected by several materials, the parts add up to more than 1.
   double share = 0.0;
-  // Change of the image's mean luminance, to first order, by a change of log(1 + f cos_i), what a
-  // fit minimises (eq. 6), the same at all pairs of directions; W / (m^2 sr).
+  // To first order, by what part of itself the image's mean luminance grows for a growth of log(1 +
+  // f cos_i), what fits are made of (eq. 6), the same at all pairs of directions. A dark material in
+  // bright light has a small share, but not a small sensitivity.
   double sensitivity = 0.0;
   // Where; null if the share is 0. A pair of directions weighs the geometric mean of its parts in
   // the share and in the sensitivity: errors of fits lie between the same everywhere in log(1 + f
