@@ -18,8 +18,9 @@
 namespace pbnbrdf {
 namespace {
 
-// Tiles whose requests are kept at a time.
+// Tiles, and samples of their pixels, whose requests are kept at a time.
 constexpr std::size_t kTilesAtOnce = 64;
+constexpr int kSamplesAtOnce = 16;
 
 Film SmallFilm(const Film& film, int most_pixels) {
   const double pixels = double(film.width) * film.height;
@@ -49,14 +50,18 @@ class DemandMeter {
   // The order in which requests are added doesn't depend on the threads.
   void Run(tbb::task_arena* arena) {
     std::vector<std::vector<Request>> requests(kTilesAtOnce);
-    for (std::size_t begin = 0; begin < tiles_.size(); begin += kTilesAtOnce) {
-      const std::size_t count = std::min(kTilesAtOnce, tiles_.size() - begin);
-      arena->execute([&] {
-        tbb::parallel_for(std::size_t{0}, count,
-                          [&](std::size_t i) { Trace(tiles_[begin + i], &requests[i]); });
-      });
-      materials_.ThrowIfFailed();
-      for (std::size_t i = 0; i < count; ++i) Add(requests[i]);
+    for (int done = 0; done < samples_; done += kSamplesAtOnce) {
+      const int samples = std::min(kSamplesAtOnce, samples_ - done);
+      for (std::size_t begin = 0; begin < tiles_.size(); begin += kTilesAtOnce) {
+        const std::size_t count = std::min(kTilesAtOnce, tiles_.size() - begin);
+        arena->execute([&] {
+          tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            Trace(tiles_[begin + i], done, samples, &requests[i]);
+          });
+        });
+        materials_.ThrowIfFailed();
+        for (std::size_t i = 0; i < count; ++i) Add(requests[i]);
+      }
     }
   }
 
@@ -77,11 +82,11 @@ class DemandMeter {
   }
 
  private:
-  void Trace(const Tile& tile, std::vector<Request>* requests) {
+  void Trace(const Tile& tile, int first, int count, std::vector<Request>* requests) {
     requests->clear();
     RequestLog log(requests);
     TileCounts counts;
-    tracer_.Trace({std::span(&tile.block, 1), 0, samples_, tile.empty}, pixels_, &counts, &log);
+    tracer_.Trace({std::span(&tile.block, 1), first, count, tile.empty}, pixels_, &counts, &log);
   }
 
   void Add(const std::vector<Request>& requests) {
@@ -109,16 +114,18 @@ class DemandMeter {
 
 std::vector<MaterialDemand> MeasureDemand(const Scene& scene, const MaterialOpener& open,
                                           const DemandOptions& options) {
-  if (options.most_pixels < 1) {
-    Fail("DemandOptions::most_pixels = ", options.most_pixels, "; must be >= 1");
+  for (const auto& [name, value] :
+       {std::pair("paths", options.paths), std::pair("most_pixels", options.most_pixels)}) {
+    if (value < 1) Fail("DemandOptions::", name, " = ", value, "; must be >= 1");
   }
-  const RenderOptions render = {.samples_per_pixel = options.samples_per_pixel,
-                                .seed = options.seed,
-                                .threads = options.threads,
-                                .max_bounces = options.max_bounces};
-  ValidateRender(render);
   Scene small = scene;
   small.film = SmallFilm(scene.film, options.most_pixels);
+  const RenderOptions render = {
+      .samples_per_pixel = std::max(1, options.paths / (small.film.width * small.film.height)),
+      .seed = options.seed,
+      .threads = options.threads,
+      .max_bounces = options.max_bounces};
+  ValidateRender(render);
   Materials materials(small, open);
   tbb::task_arena arena(ArenaThreads(options.threads));
   DemandMeter meter(small, render, &materials);

@@ -90,7 +90,7 @@ TEST(Demand, SharesAddUpWhereLightIsReflectedOnce) {
 TEST(Demand, SensitivityIsTheImagesDerivative) {
   constexpr double kChange = 1e-4;
   const Scene scene = BallOnFloor();
-  const DemandOptions options = {.samples_per_pixel = 64, .seed = 3, .max_bounces = 3};
+  const DemandOptions options = {.paths = 64 * 24 * 24, .seed = 3, .max_bounces = 3};
   const auto demand = MeasureDemand(scene, OpenUnchanged, options);
   for (std::size_t changed : {0, 1}) {
     const auto luminance = [&](double change) {
@@ -130,10 +130,9 @@ TEST(Demand, DoesNotDependOnThreads) {
 
 TEST(Demand, OfASmallerFilmIsAboutTheSame) {
   Scene scene = BallOnFloor();
-  const auto all = MeasureDemand(scene, OpenUnchanged, {.samples_per_pixel = 256});
+  const auto all = MeasureDemand(scene, OpenUnchanged, {.paths = 256 * 576});
   scene.film = {240, 240};
-  const auto part =
-      MeasureDemand(scene, OpenUnchanged, {.samples_per_pixel = 256, .most_pixels = 576});
+  const auto part = MeasureDemand(scene, OpenUnchanged, {.paths = 256 * 576, .most_pixels = 576});
   for (int i : {0, 1}) EXPECT_NEAR(part[i].share, all[i].share, 0.02 * all[i].share);
 }
 

@@ -12,7 +12,7 @@
 namespace pbnbrdf {
 
 struct DemandOptions {
-  int samples_per_pixel = 16;  // >= 1
+  int paths = 1 << 20;  // about so many, or one for each pixel; >= 1
   // The film is made smaller, of the same proportions, if it has more pixels.
   int most_pixels = 65536;  // >= 1
   std::uint64_t seed = 1;
