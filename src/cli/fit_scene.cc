@@ -43,7 +43,8 @@ constexpr std::uint64_t kMeasuredSeed = 1;
 
 const std::vector<SkipReason> kReasons = {SkipReason::kUnreferenced, SkipReason::kNotReached};
 
-// A material whose sensitivity is below gets a network and samples to match.
+// A material whose sensitivity is below gets a network and samples to match, unless the flags ask
+// for even fewer.
 constexpr double kHardlyShown = 0.01;
 constexpr std::size_t kFewSamples = 6000;
 const std::vector<int> kSmallNetwork = {8, 8};
@@ -103,7 +104,11 @@ Plan MakePlan(const SceneMaterial& material, const MaterialDemand& demand,
   plan.problem.asked = demand.angles;
   plan.why = StrCat("it reflects ", Percent(demand.share), " of the image's light");
   if (demand.sensitivity >= kHardlyShown) return plan;
-  plan.problem.hidden = kSmallNetwork;
+  FitProblem small = problem;
+  small.hidden = kSmallNetwork;
+  if (small.Shape().num_weights() < problem.Shape().num_weights()) {
+    plan.problem.hidden = kSmallNetwork;
+  }
   plan.problem.samples = std::min(problem.samples, kFewSamples);
   plan.why += " and hardly changes it: a small network and few samples";
   return plan;
