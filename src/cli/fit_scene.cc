@@ -26,7 +26,7 @@
 #include "shared_flags.h"
 
 DEFINE_string(out_dir, "", "folder for the networks, MATERIAL.safetensors, and summary.json");
-DEFINE_double(scene_floor, 0.2,
+DEFINE_double(scene_floor, pbnbrdf::FitProblem().asked_floor,
               "part of the training samples that --sampling draws; the scene draws the others");
 
 DECLARE_bool(no_skip);

@@ -75,7 +75,7 @@ TEST_F(CliFitScene, FitsWhatTheSceneShows) {
   EXPECT_FALSE(std::filesystem::exists(Path("fits/of/it/copper.safetensors")));
   const auto network = NeuralBrdf::Read(Path("fits/of/it/gold.safetensors"));
   EXPECT_EQ(network.metadata().at("material"), "builtin:satin-gold");
-  EXPECT_THAT(network.metadata().at("problem"), HasSubstr("--scene_floor=0.2"));
+  EXPECT_THAT(network.metadata().at("problem"), HasSubstr("--scene_floor=0.5"));
 }
 
 TEST_F(CliFitScene, WithoutSkippingAllAreFittedAndTheImageIsTheSame) {

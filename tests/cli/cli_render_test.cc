@@ -52,8 +52,8 @@ TEST_F(CliRender, TakesAnotherEnvironmentAndOtherMaterials) {
 }
 
 TEST_F(CliRender, ShippedScenesRender) {
-  for (const char* name : {"sphere.json", "furnace.json", "cove.json", "gallery.json",
-                           "one_of_many.json"}) {
+  for (const char* name :
+       {"sphere.json", "furnace.json", "cove.json", "gallery.json", "one_of_many.json"}) {
     const Result result =
         Run("render" + Small(name) + "--samples_per_pixel=2 --out=" + Path("a.exr"));
     EXPECT_EQ(result.status, 0) << name << ": " << result.err;
@@ -73,7 +73,7 @@ TEST_F(CliRender, CountsWhatItLeavesOut) {
   ASSERT_EQ(with.status, 0) << with.err;
   const json least = json::parse(ReadFile(Path("summary.json"), 1 << 20));
   for (const char* text : {"\n  materials ", "\n  samples ", "\n  lanes ", "\n  rays ",
-                           "\n  brdf_values ", " below_horizon", " ended (saved about "}) {
+                           "\n  brdf_values ", " ended\n", " unlit (saved about "}) {
     EXPECT_THAT(with.out, HasSubstr(text));
   }
   ASSERT_EQ(Run(render + " --no_skip --quiet --out=" + Path("b.exr")).out, "");

@@ -79,7 +79,7 @@ struct FitProblem {
   // come from there.
   Sampling sampling = Sampling::kHighlight;
   std::shared_ptr<const AngleDistribution> asked;
-  double asked_floor = 0.2;  // in [0, 1]
+  double asked_floor = 0.5;  // in [0, 1]
   std::size_t samples = 60000;
   std::size_t first_samples = 1000;
   double growth = 3.0;     // > 1
