@@ -2,7 +2,6 @@
 // network, and with ours.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <iterator>
@@ -18,6 +17,7 @@
 #include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/render.h"
 #include "pbnbrdf/solve/fit.h"
+#include "small_scene.h"
 
 DEFINE_string(scene, "problems/scenes/sphere.json", "a scene of one material");
 DEFINE_string(environment, "", "OpenEXR file in place of the scene's environment light");
@@ -79,14 +79,6 @@ FittedNetwork FitOurs(const Brdf& material) {
   options.threads = FLAGS_threads;
   const Fit fit = FitBrdf(material, problem, options);
   return {fit.network, fit.summary.seconds};
-}
-
-Scene ReadSphere() {
-  Scene scene = ReadScene(FLAGS_scene, {.environment = FLAGS_environment});
-  if (scene.materials.size() != 1) Fail(FLAGS_scene, ": must have one material");
-  const double height = double(scene.film.height) / scene.film.width * FLAGS_film_width;
-  scene.film = {FLAGS_film_width, std::max(kSsimWindow, static_cast<int>(std::lround(height)))};
-  return scene;
 }
 
 // Black over red and yellow to white.
@@ -184,12 +176,12 @@ Image RunMaterial(const Scene& scene, const MaterialSource& source, Table* table
 }
 
 void Run(const std::vector<std::string>& arguments) {
-  if (FLAGS_film_width < kSsimWindow) Fail("film_width must be >= ", kSsimWindow);
   if (!(FLAGS_largest_flip > 0.0)) Fail("largest_flip must be > 0");
   std::vector<std::string> texts = arguments;
   if (texts.empty()) texts = {std::begin(kDefaultMaterials), std::end(kDefaultMaterials)};
   for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
-  const Scene scene = ReadSphere();
+  const Scene scene = ReadSmallScene(FLAGS_scene, FLAGS_environment, FLAGS_film_width);
+  if (scene.materials.size() != 1) Fail(FLAGS_scene, ": must have one material");
   Table table(
       {"material", "network", "fit, s", "RMSE", "PSNR, dB", "SSIM", "FLIP", "Delta E 2000"});
   std::vector<Image> rows;

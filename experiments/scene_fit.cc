@@ -1,6 +1,5 @@
 // scene_fit.cc: fits for a scene beside fits for all angles: image error against training samples.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -16,6 +15,7 @@
 #include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/demand.h"
 #include "pbnbrdf/solve/fit.h"
+#include "small_scene.h"
 
 DEFINE_string(scenes, "problems/scenes/sphere.json,problems/scenes/gallery.json",
               "scene files, separated by commas");
@@ -155,13 +155,6 @@ struct Row {
   std::vector<ImageError> errors;
 };
 
-Scene ReadSmallScene(const std::string& path) {
-  Scene scene = ReadScene(path, {.environment = FLAGS_environment});
-  const double height = double(scene.film.height) / scene.film.width * FLAGS_film_width;
-  scene.film = {FLAGS_film_width, std::max(kSsimWindow, static_cast<int>(std::lround(height)))};
-  return scene;
-}
-
 // Where the material goes.
 std::size_t SlotOf(const Scene& scene, const std::string& source) {
   if (scene.materials.size() == 1) return 0;
@@ -230,7 +223,6 @@ std::string Markdown(const std::vector<Row>& rows) {
 
 void Run(const std::vector<std::string>& arguments) {
   if (FLAGS_samples < 3) Fail("samples = ", FLAGS_samples, "; must be >= 3");
-  if (FLAGS_film_width < kSsimWindow) Fail("film_width must be >= ", kSsimWindow);
   std::vector<std::string> texts = arguments;
   if (texts.empty()) texts = {std::begin(kDefaultMaterials), std::end(kDefaultMaterials)};
   for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
@@ -239,7 +231,7 @@ void Run(const std::vector<std::string>& arguments) {
              {"scene", "material", "method", "samples", "seed", "rmse", "flip"});
   std::vector<Row> rows;
   for (const std::string& path : Split(FLAGS_scenes, ',')) {
-    const Scene scene = ReadSmallScene(path);
+    const Scene scene = ReadSmallScene(path, FLAGS_environment, FLAGS_film_width);
     Proposals proposals;
     const std::string name = std::filesystem::path(path).stem();
     for (const MaterialSource& material : materials) {

@@ -71,9 +71,7 @@ void PrintText(const Measured& measured) {
 
 // The weights if --lpips is given. Throws Error.
 std::optional<LpipsWeights> RequestedLpipsWeights() {
-  gflags::CommandLineFlagInfo flag;
-  gflags::GetCommandLineFlagInfo("lpips", &flag);
-  if (flag.is_default) return std::nullopt;
+  if (!IsGiven("lpips")) return std::nullopt;
   if (FLAGS_lpips.empty()) throw UsageError("--lpips= needs a file");
   return ReadLpipsWeights(FLAGS_lpips);
 }

@@ -48,17 +48,6 @@ std::string EnergyText(const EnergySummary& energy) {
                 "\n");
 }
 
-// The flags that repeat this fit, as a flagfile.
-std::string ProblemFlagfile() {
-  std::vector<std::string> names = MaterialFlags();
-  for (const FlagGroup& group : ProblemFlags()) {
-    names.insert(names.end(), group.names.begin(), group.names.end());
-  }
-  std::string text;
-  for (const std::string& line : FlagLines(names)) text += line + "\n";
-  return text;
-}
-
 // Throws UsageError if a file is named twice; empty names stand for none.
 void CheckDifferent(const std::vector<std::string>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -112,7 +101,8 @@ int RunFit(const std::vector<std::string>&) {
 
   const nlohmann::ordered_json measures = MeasureFit(
       *material, fit.network, fit.network.weights().size(), kSummarySamples, kSummarySeed);
-  const FitSubject subject = {FLAGS_material, FLAGS_scale_to_albedo, ProblemFlagfile()};
+  const FitSubject subject = {FLAGS_material, FLAGS_scale_to_albedo,
+                              ProblemFlagfile(MaterialFlags())};
   NeuralBrdf(fit.network.shape(), fit.network.weights(),
              FitMetadata(subject, flags.problem, fit.summary, measures))
       .Write(FLAGS_out);

@@ -143,6 +143,22 @@ std::vector<FlagGroup> ProblemFlags() {
             "max_seconds", "function_tolerance", "batch", "learning_rate", "energy_angles"}}};
 }
 
+std::vector<std::string> ProblemFlagNames() {
+  std::vector<std::string> names;
+  for (const FlagGroup& group : ProblemFlags()) {
+    names.insert(names.end(), group.names.begin(), group.names.end());
+  }
+  return names;
+}
+
+std::string ProblemFlagfile(std::vector<std::string> subject) {
+  const std::vector<std::string> problem = ProblemFlagNames();
+  subject.insert(subject.end(), problem.begin(), problem.end());
+  std::string text;
+  for (const std::string& line : FlagLines(subject)) text += line + "\n";
+  return text;
+}
+
 FitFlags ParseFitFlags() {
   try {
     const FitFlags flags = {ParseProblem(), ParseOptions()};

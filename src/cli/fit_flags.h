@@ -1,6 +1,7 @@
 // fit_flags.h: the flags that describe a fit.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "command_line.h"
@@ -10,6 +11,12 @@ namespace pbnbrdf::cli {
 
 // The flags that make up a problem and say how to solve it: with them a fit can be repeated.
 std::vector<FlagGroup> ProblemFlags();
+
+// The names of all of them.
+std::vector<std::string> ProblemFlagNames();
+
+// A flagfile that repeats a fit: the flags that say what is fitted, and those of the problem.
+std::string ProblemFlagfile(std::vector<std::string> subject);
 
 struct FitFlags {
   FitProblem problem;

@@ -42,10 +42,8 @@ constexpr const char* kSharedFlags[] = {
     "sampling", "samples", "seed", "function_tolerance", "loss_scale", "max_iterations", "starts"};
 
 void RefuseFlagsOfNetworks() {
-  std::vector<std::string> names = {"summary", "trace"};
-  for (const FlagGroup& group : ProblemFlags()) {
-    names.insert(names.end(), group.names.begin(), group.names.end());
-  }
+  std::vector<std::string> names = ProblemFlagNames();
+  names.insert(names.end(), {"summary", "trace"});
   for (const std::string& name : names) {
     const bool shared = std::count(std::begin(kSharedFlags), std::end(kSharedFlags), name) > 0;
     if (!shared && IsGiven(name)) {

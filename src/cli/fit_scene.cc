@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
@@ -18,6 +17,7 @@
 #include "interrupt.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/base/text.h"
+#include "pbnbrdf/base/timer.h"
 #include "pbnbrdf/brdf/scaled.h"
 #include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/demand.h"
@@ -49,12 +49,6 @@ constexpr double kHardlyShown = 0.01;
 constexpr std::size_t kFewSamples = 6000;
 const std::vector<int> kSmallNetwork = {8, 8};
 
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 std::string InFolder(const std::string& file) {
   return std::filesystem::path(FLAGS_out_dir) / file;
 }
@@ -70,16 +64,6 @@ struct Plan {
   FitProblem problem;
 };
 
-std::string FlagsText() {
-  std::vector<std::string> names = {"scene", "scene_floor"};
-  for (const FlagGroup& group : ProblemFlags()) {
-    names.insert(names.end(), group.names.begin(), group.names.end());
-  }
-  std::string text;
-  for (const std::string& line : FlagLines(names)) text += line + "\n";
-  return text;
-}
-
 // "35 %", "0.012 %"
 std::string Percent(double part) {
   std::ostringstream text;
@@ -91,7 +75,8 @@ Plan MakePlan(const SceneMaterial& material, const MaterialDemand& demand,
               const FitProblem& problem) {
   Plan plan;
   plan.name = material.name;
-  plan.subject = {material.source, material.scale_to_albedo, FlagsText()};
+  plan.subject = {material.source, material.scale_to_albedo,
+                  ProblemFlagfile({"scene", "scene_floor"})};
   plan.share = demand.share;
   plan.sensitivity = demand.sensitivity;
   plan.needed = demand.reached;
@@ -126,7 +111,7 @@ class SceneFitter {
   SceneFitter(const Scene& scene, const FitFlags& flags) : flags_(flags) {
     const std::vector<MaterialDemand> demand =
         Demand(scene, {.seed = flags.problem.seed, .threads = FLAGS_threads});
-    demand_seconds_ = SecondsSince(start_);
+    demand_seconds_ = timer_.Seconds();
     for (std::size_t i = 0; i < demand.size(); ++i) {
       plans_.push_back(MakePlan(scene.materials[i], demand[i], flags.problem));
       work_.needed += plans_.back().needed;
@@ -135,10 +120,9 @@ class SceneFitter {
 
   void Run() {
     for (const Plan& plan : plans_) {
-      if (plan.skip_reason && !FLAGS_no_skip) {
-        ++work_.Skipped(*plan.skip_reason);
-        fits_.push_back(PlanJson(plan));
-      } else if (Interrupted()) {
+      const bool skips = plan.skip_reason && !FLAGS_no_skip;
+      if (skips) ++work_.Skipped(*plan.skip_reason);
+      if (skips || Interrupted()) {
         fits_.push_back(PlanJson(plan));
       } else {
         Fit(plan);
@@ -150,7 +134,7 @@ class SceneFitter {
     return {{"scene", FLAGS_scene},
             {"interrupted", Interrupted()},
             {"demand_seconds", demand_seconds_},
-            {"seconds", SecondsSince(start_)},
+            {"seconds", timer_.Seconds()},
             {"materials", WorkJson(work_, kReasons)},
             {"fits", fits_},
             {"version", PBNBRDF_VERSION}};
@@ -170,7 +154,7 @@ class SceneFitter {
   }
 
   void Fit(const Plan& plan) try {
-    const Clock::time_point start = Clock::now();
+    const Timer timer;
     std::unique_ptr<Brdf> material = OpenBrdf(plan.subject.material);
     if (plan.subject.scale_to_albedo > 0.0) {
       material = ScaleToAlbedo(std::move(material), plan.subject.scale_to_albedo);
@@ -190,7 +174,7 @@ class SceneFitter {
                FitMetadata(plan.subject, problem, fit.summary, measures))
         .Write(InFolder(file));
     ++work_.done;
-    work_.seconds += SecondsSince(start);
+    work_.seconds += timer.Seconds();
     nlohmann::ordered_json json = PlanJson(plan);
     json["file"] = file;
     json["hidden"] = problem.hidden;
@@ -215,7 +199,7 @@ class SceneFitter {
   }
 
   const FitFlags& flags_;
-  const Clock::time_point start_ = Clock::now();
+  const Timer timer_;
   const bool show_progress_ = !FLAGS_quiet && isatty(STDERR_FILENO);
   double demand_seconds_ = 0.0;
   std::vector<Plan> plans_;
@@ -224,7 +208,7 @@ class SceneFitter {
 };
 
 // Names that can be files, and a folder to write them to.
-void CheckOutputs(const Scene& scene, const std::string& summary) {
+void PrepareOutputs(const Scene& scene, const std::string& summary) {
   for (const SceneMaterial& material : scene.materials) {
     if (material.name.empty() || material.name.find('/') != std::string::npos) {
       Fail(FLAGS_scene, ": materials.", material.name, ": the name can't be that of a file");
@@ -249,7 +233,8 @@ bool FitsScene() {
     }
     return false;
   }
-  for (const char* name : {"material", "scale_to_albedo", "out", "trace", "init", "model"}) {
+  for (const char* name :
+       {"material", "scale_to_albedo", "out", "trace", "init", "model", "lobes"}) {
     if (IsGiven(name)) throw UsageError(StrCat("--", name, " doesn't go with --scene"));
   }
   return true;
@@ -264,7 +249,7 @@ int RunSceneFit() {
   flags.problem.asked_floor = FLAGS_scene_floor;
   const std::string summary = FLAGS_summary.empty() ? InFolder("summary.json") : FLAGS_summary;
   const Scene scene = ReadScene(FLAGS_scene);
-  CheckOutputs(scene, summary);
+  PrepareOutputs(scene, summary);
   CatchInterrupt();
   SceneFitter fitter(scene, flags);
   fitter.Run();

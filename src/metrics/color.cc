@@ -70,8 +70,6 @@ Rgb FromXyz(const std::array<double, 3>& xyz) {
   return linear;
 }
 
-double Luminance(const Rgb& linear) { return ToXyz(linear)[1]; }
-
 Lab ToLab(const Rgb& linear) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   const std::array<double, 3> white = ToXyz({1.0, 1.0, 1.0}), xyz = ToXyz(linear);

@@ -7,7 +7,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -15,6 +14,7 @@
 #include "analytic_residual.h"
 #include "analytic_starts.h"
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/timer.h"
 
 namespace pbnbrdf {
 namespace {
@@ -148,7 +148,7 @@ void AnalyticFitOptions::Validate() const {
 AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
                         const AnalyticFitOptions& options) {
   options.Validate();
-  const auto begin = std::chrono::steady_clock::now();
+  const Timer timer;
   const int lobes = model.lobe.empty() ? 0 : options.lobes;
   const std::vector<BrdfSample> samples =
       DrawSamples(material, SampleSet::kTraining, options.sampling, options.samples, options.seed);
@@ -171,9 +171,8 @@ AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
     scalars = fitter.parameters().ToBoundedScalars(best.numbers);
   }
   AnalyticFit fit{AnalyticBrdf(model, lobes, scalars), {}};
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   fit.summary = {best.cost,      best.iterations, samples.size(),
-                 best.converged, seconds.count(), best.message};
+                 best.converged, timer.Seconds(), best.message};
   return fit;
 }
 

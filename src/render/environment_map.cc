@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "luminance.h"
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/brdf/luminance.h"
 
 namespace pbnbrdf {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/timer.h"
 #include "pbnbrdf/brdf/scaled.h"
-#include "stopwatch.h"
 
 namespace pbnbrdf {
 namespace {
@@ -50,7 +50,7 @@ void Materials::Open(std::size_t material) {
   const std::lock_guard lock(mutex_);
   Slot& slot = slots_[material];
   if (slot.opened.load(std::memory_order_relaxed)) return;
-  const Stopwatch stopwatch(&slot.seconds);
+  const ScopedTimer timer(&slot.seconds);
   try {
     // Isolated: a thread that waits for the opener's own tasks must not take up another tile, as
     // that may want the mutex.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pbnbrdf/base/timer.h"
 #include "random.h"
-#include "stopwatch.h"
 #include "vertex.h"
 
 namespace pbnbrdf {
@@ -128,7 +128,7 @@ class TilePaths {
   // reflected.
   void FollowCameraRays(bool empty) {
     const bool skip = empty && t_.options_.skip;
-    const Stopwatch stopwatch(&work_.rays.seconds);
+    const ScopedTimer timer(&work_.rays.seconds);
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const Ray& ray = camera_rays_[i];
       Hit hit;
@@ -198,7 +198,7 @@ class TilePaths {
   }
 
   const PreparedMaterial* Reach(int material) {
-    const Stopwatch stopwatch(&seconds_opening_);
+    const ScopedTimer timer(&seconds_opening_);
     return t_.materials_.Reach(std::size_t(material));
   }
 
@@ -223,7 +223,7 @@ class TilePaths {
 
   // Takes those from lit_ which don't arrive.
   void TraceShadowRays(std::span<const Vertex> vertices) {
-    const Stopwatch stopwatch(&work_.rays.seconds);
+    const ScopedTimer timer(&work_.rays.seconds);
     CountDone(lit_.size(), &work_.rays);
     std::erase_if(lit_, [&](const Lit& lit) {
       const Ray ray = vertices[lit.vertex].RayTo(lit.light.direction);
@@ -260,7 +260,7 @@ class TilePaths {
 
   // Looks where the directions lead to, and takes those from onward_ that lead to nothing.
   void TraceOnward() {
-    const Stopwatch stopwatch(&work_.rays.seconds);
+    const ScopedTimer timer(&work_.rays.seconds);
     CountDone(onward_.size(), &work_.rays);
     std::erase_if(onward_, [&](Onward& onward) {
       Hit hit;
@@ -282,7 +282,7 @@ class TilePaths {
     pairs_.insert(pairs_.end(), unneeded_.begin(), unneeded_.end());
     values_.resize(pairs_.size());
     if (pairs_.empty()) return;
-    const Stopwatch stopwatch(&work_.brdf_values.seconds);
+    const ScopedTimer timer(&work_.brdf_values.seconds);
     brdf.Evaluate(pairs_, values_);
   }
 
@@ -327,7 +327,7 @@ class TilePaths {
   }
 
   bool Survives(Path* path) const {
-    const double largest = *std::max_element(path->throughput.begin(), path->throughput.end());
+    const double largest = Largest(path->throughput);
     if (!(largest > 0.0)) return false;
     if (bounce_ < kSureBounces || largest >= 1.0) return true;
     if (!(path->random.Next() < largest)) return false;
@@ -350,7 +350,7 @@ class TilePaths {
       ++work_.rays.Skipped(reason);
       return;
     }
-    const Stopwatch stopwatch(&work_.rays.seconds);
+    const ScopedTimer timer(&work_.rays.seconds);
     t_.geometry_.Occluded(ray, distance);
     ++work_.rays.done;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "luminance.h"
+#include "pbnbrdf/brdf/luminance.h"
 
 namespace pbnbrdf {
 namespace {

@@ -14,8 +14,8 @@
 #include "materials.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/timer.h"
 #include "pixels.h"
-#include "stopwatch.h"
 #include "tiles.h"
 
 namespace pbnbrdf {

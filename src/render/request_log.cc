@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "luminance.h"
+#include "pbnbrdf/brdf/luminance.h"
 
 namespace pbnbrdf {
 

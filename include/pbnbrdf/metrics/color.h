@@ -13,17 +13,15 @@
 #include <array>
 
 #include "pbnbrdf/brdf/direction.h"
+#include "pbnbrdf/brdf/luminance.h"
 
 namespace pbnbrdf {
 
-// X, Y, Z; Y, the luminance, is 1 for white.
+// X, Y, Z; Y is Luminance.
 std::array<double, 3> ToXyz(const Rgb& linear);
 
 // The inverse of ToXyz.
 Rgb FromXyz(const std::array<double, 3>& xyz);
-
-// Y alone.
-double Luminance(const Rgb& linear);
 
 struct Lab {
   double l = 0.0;           // lightness: black 0, white 100

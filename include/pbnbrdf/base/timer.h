@@ -1,4 +1,4 @@
-// stopwatch.h: how long things take.
+// timer.h: how long things take.
 #pragma once
 
 #include <chrono>
@@ -16,12 +16,12 @@ class Timer {
 };
 
 // Adds the time from its construction to its end to a sum of seconds.
-class Stopwatch {
+class ScopedTimer {
  public:
-  explicit Stopwatch(double* seconds) : seconds_(seconds) {}
-  ~Stopwatch() { *seconds_ += timer_.Seconds(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
+  explicit ScopedTimer(double* seconds) : seconds_(seconds) {}
+  ~ScopedTimer() { *seconds_ += timer_.Seconds(); }
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
 
  private:
   double* seconds_;
