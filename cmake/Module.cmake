@@ -12,12 +12,16 @@ endif()
 # pbnbrdf_module(NAME [MODULES module ...] [LIBS target ...] [PRIVATE_LIBS target ...])
 #
 # The library pbnbrdf_NAME from src/NAME/*.cc and include/pbnbrdf/NAME/*.h. Each module's headers have an
-# include root of their own, so that including one of a module that isn't linked doesn't compile.
+# include root of their own, so that including one of a module that isn't linked doesn't compile:
+#   "pbnbrdf/NAME/x.h"  public: for users, installed;
+#   "NAME/x.h"          internal: for the modules of this project that link NAME;
+#   "x.h"               for the module itself.
 function(pbnbrdf_module name)
   cmake_parse_arguments(M "" "" "MODULES;LIBS;PRIVATE_LIBS" ${ARGN})
   set(root ${PROJECT_BINARY_DIR}/include_roots/${name})
   file(MAKE_DIRECTORY ${root}/pbnbrdf)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/include/pbnbrdf/${name} ${root}/pbnbrdf/${name} SYMBOLIC)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/${name} ${root}/${name} SYMBOLIC)
 
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cc)
   if(sources)

@@ -5,15 +5,15 @@
 #include <optional>
 
 #include "ablation_tables.h"
+#include "base/text.h"
 #include "comparison.h"
 #include "default_materials.h"
 #include "experiment.h"
 #include "fit_log.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/brdf/scaled.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 DEFINE_string(materials, "",
               "in place of the default ones, separated by commas: sources, CLASS= in front of them "
@@ -276,8 +276,10 @@ class Ablation {
   static void Measure(const Brdf& material, const Fit& fit, AblationRecord* record) {
     record->iterations = fit.summary.iterations;
     record->seconds = fit.summary.seconds;
-    record->errors = MeasureErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
-    record->colors = MeasureColorErrors(material, fit.network, FLAGS_heldout_samples, /*seed=*/1);
+    record->errors =
+        MeasureErrors(HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1), fit.network);
+    record->colors = MeasureColorErrors(HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1),
+                                        fit.network);
     record->reciprocity = MeasureReciprocity(fit.network);
     record->energy = MeasureEnergy(fit.network);
   }

@@ -7,9 +7,9 @@
 #include <limits>
 #include <string_view>
 
+#include "base/text.h"
 #include "curves.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "table.h"
 
 namespace pbnbrdf {

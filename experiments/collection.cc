@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/text.h"
 #include "comparison.h"
 #include "experiment.h"
 #include "fit_log.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 DEFINE_string(seeds, "1", "seeds of the fits");
 DEFINE_int32(max_iterations, pbnbrdf::FitOptions{}.max_iterations, "of each fit");
@@ -132,7 +132,8 @@ Record FitOne(const Plan& plan, const MaterialSource& material, std::size_t seed
           seed,
           fit.summary.iterations,
           fit.summary.seconds,
-          MeasureErrors(*brdf, fit.network, FLAGS_heldout_samples, /*seed=*/1).mean_abs_log_error,
+          MeasureErrors(HeldOutSamples(*brdf, FLAGS_heldout_samples, /*seed=*/1), fit.network)
+              .mean_abs_log_error,
           hrl,
           hcl,
           MeasureEnergy(fit.network).max_directional_albedo};

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf {
 namespace {

@@ -9,9 +9,9 @@
 #include <mutex>
 #include <thread>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 
 DEFINE_string(out_dir, ".", "folder to write to");
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <string>
 
-#include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/half_diff.h"
-#include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/sources/merl.h"
 
 namespace pbnbrdf {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "table.h"
 
 namespace pbnbrdf {

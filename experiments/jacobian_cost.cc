@@ -3,11 +3,11 @@
 
 #include <cstdio>
 
+#include "base/text.h"
 #include "experiment.h"
 #include "jacobian_methods.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "process.h"
 
 DEFINE_string(material, "builtin:satin-gold", "source of reflectance");

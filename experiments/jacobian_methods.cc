@@ -10,8 +10,8 @@
 #include <memory>
 
 #include "matrix_product.h"
-#include "pbnbrdf/network/batched_mlp.h"
-#include "pbnbrdf/network/encoded_batches.h"
+#include "network/batched_mlp.h"
+#include "network/encoded_batches.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/objective.h"
 #include "pbnbrdf/residuals/log_residual.h"

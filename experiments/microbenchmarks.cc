@@ -10,18 +10,18 @@
 #include <tbb/task_arena.h>
 
 #include "flops.h"
+#include "kernels/evaluation.h"
+#include "kernels/kernels.h"
 #include "matrix_product.h"
-#include "pbnbrdf/brdf/builtin.h"
-#include "pbnbrdf/brdf/merl.h"
-#include "pbnbrdf/kernels/evaluation.h"
-#include "pbnbrdf/kernels/kernels.h"
-#include "pbnbrdf/network/batched_mlp.h"
-#include "pbnbrdf/network/fast_neural_brdf.h"
+#include "network/batched_mlp.h"
+#include "network/fast_neural_brdf.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
-#include "pbnbrdf/problem/condensed_cost_function.h"
-#include "pbnbrdf/problem/jittered_cholesky.h"
-#include "pbnbrdf/problem/normal_equations.h"
+#include "pbnbrdf/sources/merl.h"
+#include "problem/condensed_cost_function.h"
+#include "problem/jittered_cholesky.h"
+#include "problem/normal_equations.h"
 
 namespace pbnbrdf {
 namespace {

@@ -7,16 +7,16 @@
 #include <map>
 #include <memory>
 
+#include "base/text.h"
 #include "comparison.h"
 #include "default_materials.h"
 #include "experiment.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/models/fit_analytic.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 DEFINE_string(materials, "",
               "in place of the default ones, separated by commas: sources, CLASS= in front of them "
@@ -31,7 +31,7 @@ DEFINE_string(hidden, "3,3 21,21", "hidden layers of the networks, '' for none")
 DEFINE_string(sampling, "uniform",
               "training angles of the models: uniform, as those that errors are measured on | "
               "highlight, as the networks have them");
-DEFINE_uint64(samples, pbnbrdf::AnalyticFitOptions{}.samples, "training samples of the models");
+DEFINE_uint64(samples, 6000, "training samples of the models");
 DEFINE_int32(starts, pbnbrdf::AnalyticFitOptions{}.starts, "of the models");
 DEFINE_uint64(network_samples, pbnbrdf::FitProblem{}.samples, "most samples of the networks");
 DEFINE_int32(network_iterations, pbnbrdf::FitOptions{}.max_iterations, "of the networks, at most");
@@ -81,7 +81,10 @@ struct Method {
 
 MethodResult FitModel(const Brdf& material, const AnalyticModel& model,
                       const AnalyticFitOptions& options) {
-  const AnalyticFit fit = FitAnalytic(material, model, options);
+  const std::vector<BrdfSample> samples =
+      DrawSamples(material, SampleSet::kTraining, ParseName(kSamplings, "sampling", FLAGS_sampling),
+                  FLAGS_samples, FLAGS_seed);
+  const AnalyticFit fit = FitAnalytic(samples, material.IsIsotropic(), model, options);
   return {std::make_unique<AnalyticBrdf>(fit.brdf), fit.brdf.parameters().size(),
           fit.summary.iterations, fit.summary.seconds};
 }
@@ -100,10 +103,7 @@ void AddModels(std::vector<Method>* methods) {
     for (std::size_t n : lobes) {
       AnalyticFitOptions options;
       options.lobes = static_cast<int>(n);
-      options.sampling = ParseName(kSamplings, "sampling", FLAGS_sampling);
-      options.samples = FLAGS_samples;
       options.starts = FLAGS_starts;
-      options.seed = FLAGS_seed;
       options.threads = FLAGS_threads;
       options.Validate();
       const bool has_lobes = !model.lobe.empty();
@@ -277,9 +277,11 @@ class Comparison {
     record->parameters = result.parameters;
     record->iterations = result.iterations;
     record->seconds = result.seconds;
-    record->errors = MeasureErrors(material, *result.brdf, FLAGS_heldout_samples, /*seed=*/1);
-    record->delta_e =
-        MeasureColorErrors(material, *result.brdf, FLAGS_heldout_samples, /*seed=*/1).delta_e_mean;
+    record->errors =
+        MeasureErrors(HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1), *result.brdf);
+    record->delta_e = MeasureColorErrors(
+                          HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1), *result.brdf)
+                          .delta_e_mean;
     if (!std::isfinite(record->errors.mean_abs_log_error) || !std::isfinite(record->delta_e)) {
       Fail("a measure isn't finite");
     }

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/network/nbrdf_files.h"
+#include "pbnbrdf/sources/nbrdf_files.h"
 #include "process.h"
 
 namespace pbnbrdf {

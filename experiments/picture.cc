@@ -6,17 +6,17 @@
 #include <functional>
 #include <iterator>
 
+#include "base/text.h"
 #include "comparison.h"
 #include "default_materials.h"
 #include "experiment.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/metrics/flip.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/render.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "small_scene.h"
 
 DEFINE_string(scene, "problems/scenes/sphere.json", "a scene of one material");

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/text.h"
 #include "experiment.h"
 #include "flops.h"
 #include "matrix_product.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/problem/objective.h"
 #include "pbnbrdf/residuals/log_residual.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "process.h"
 
 DEFINE_string(material, "builtin:satin-gold", "source of reflectance");

@@ -5,16 +5,16 @@
 #include <iterator>
 #include <map>
 
+#include "base/text.h"
 #include "comparison.h"
 #include "default_materials.h"
 #include "experiment.h"
 #include "fit_log.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/demand.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "small_scene.h"
 
 DEFINE_string(scenes, "problems/scenes/sphere.json,problems/scenes/gallery.json",

@@ -4,14 +4,15 @@
 #include <fstream>
 #include <memory>
 
+#include "base/text.h"
 #include "comparison.h"
 #include "experiment.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/brdf/builtin.h"
-#include "pbnbrdf/brdf/merl.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
-#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/problem/sampling.h"
+#include "pbnbrdf/sources/merl.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 DEFINE_string(method, "nbrdf",
               "nbrdf: as the fit's defaults have it | pbnbrdf: with the chromaticity term too; for "
@@ -189,7 +190,8 @@ class Comparison {
   }
 
   static double HeldoutError(const MerlBrdf& table, const NeuralBrdf& network) {
-    return MeasureErrors(table, network, FLAGS_heldout_samples, /*seed=*/1).mean_abs_log_error;
+    return MeasureErrors(HeldOutSamples(table, FLAGS_heldout_samples, /*seed=*/1), network)
+        .mean_abs_log_error;
   }
 
   void RunFit(const MaterialSource& material, const MerlBrdf& table, const std::string& solver,

@@ -13,9 +13,9 @@
 #include <mutex>
 #include <thread>
 
+#include "base/text.h"
 #include "experiment.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 #include "process.h"
 #include "stability_report.h"
 #include "stability_run.h"

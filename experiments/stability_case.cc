@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <set>
 
+#include "base/text.h"
 #include "extreme_materials.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/brdf/builtin.h"
-#include "pbnbrdf/brdf/open_brdf.h"
+#include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf {
 namespace {
@@ -159,7 +159,7 @@ StabilityCase StabilitySweep::Next() {
 }
 
 std::unique_ptr<Brdf> MakeSweepMaterial(const std::string& name) {
-  return name.starts_with("sgd:") ? OpenMeasuredBrdf(name) : MakeExtremeOrBuiltin(name);
+  return name.starts_with("sgd:") ? OpenBrdf(name) : MakeExtremeOrBuiltin(name);
 }
 
 }  // namespace pbnbrdf

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 namespace {

@@ -5,10 +5,11 @@
 #include <numbers>
 
 #include "hard_pairs.h"
+#include "network/fast_neural_brdf.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
-#include "pbnbrdf/network/fast_neural_brdf.h"
-#include "pbnbrdf/solve/ceres_solvers.h"
-#include "pbnbrdf/solve/tiny_lm.h"
+#include "pbnbrdf/problem/sampling.h"
+#include "solve/ceres_solvers.h"
+#include "solve/tiny_lm.h"
 
 namespace pbnbrdf {
 namespace {
@@ -178,7 +179,8 @@ void Measure(const Brdf& material, const StabilityCase& c, const NeuralBrdf& net
   const FastNeuralBrdf fast(network);
   EvaluateHardPairs("values", network, check);
   EvaluateHardPairs("fast_values", fast, check);
-  const HeldOutErrors errors = MeasureErrors(material, network, kHeldOutSamples, c.problem.seed);
+  const HeldOutErrors errors =
+      MeasureErrors(HeldOutSamples(material, kHeldOutSamples, c.problem.seed), network);
   record->error = errors.mean_abs_log_error;
   check->Number("mean_abs_log_error", errors.mean_abs_log_error);
   check->Number("chromaticity_error", errors.chromaticity_error);

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "pbnbrdf/kernels/kernels.h"
+#include "kernels/kernels.h"
 
 namespace pbnbrdf {
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 

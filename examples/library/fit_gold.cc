@@ -1,6 +1,6 @@
-#include <iostream>
-#include <pbnbrdf/network/open_brdf.h>
 #include <pbnbrdf/solve/fit.h>
+#include <pbnbrdf/sources/open_brdf.h>
+#include <iostream>
 
 int main(int argc, char** argv) {
   const auto material = pbnbrdf::OpenBrdf("builtin:satin-gold");

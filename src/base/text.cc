@@ -1,8 +1,9 @@
-#include "pbnbrdf/base/text.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "pbnbrdf/base/error.h"
@@ -59,11 +60,16 @@ double ParseNumber(std::string_view field, std::string_view text) {
   return value;
 }
 
-long ParseInteger(std::string_view field, std::string_view text) {
-  long value = 0;
+template <typename Integer>
+Integer ParseInteger(std::string_view field, std::string_view text) {
+  Integer value = 0;
   if (!ParseAll(Trim(text), &value)) Fail(field, ": '", text, "' is not a whole number");
   return value;
 }
+
+template int ParseInteger<int>(std::string_view, std::string_view);
+template long ParseInteger<long>(std::string_view, std::string_view);
+template std::uint64_t ParseInteger<std::uint64_t>(std::string_view, std::string_view);
 
 std::string Nearest(const std::vector<std::string>& names, const std::string& name) {
   return *std::min_element(names.begin(), names.end(),

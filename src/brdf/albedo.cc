@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "pbnbrdf/brdf/merl.h"
+#include "brdf/merl_rows.h"
 
 namespace pbnbrdf {
 namespace {
@@ -270,8 +270,8 @@ AlbedoQuadrature AlbedoQuadrature::OnMerlRows(int n_theta, int n_phi) {
 std::vector<AlbedoQuadrature::Cell> AlbedoQuadrature::Cells(double theta_max) const {
   if (!on_merl_rows_) return {{0.0, theta_max, 3, &x_}};
   std::vector<Cell> cells;
-  for (int row = 0; row < MerlBrdf::kThetaH; ++row) {
-    const double first = MerlBrdf::RowAngle(row), last = MerlBrdf::RowAngle(row + 1);
+  for (int row = 0; row < kMerlRows; ++row) {
+    const double first = MerlRowAngle(row), last = MerlRowAngle(row + 1);
     const GaussLegendre* rule = row < kFirstRows ? &x_of_first_rows_ : &x_;
     if (first < theta_max) cells.push_back({first, std::min(last, theta_max), 1, rule});
   }

@@ -1,10 +1,10 @@
-#include "ggx_reflections.h"
+#include "brdf/ggx_reflections.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "pbnbrdf/brdf/microfacet.h"
+#include "pbnbrdf/brdf/ggx.h"
 
 namespace pbnbrdf {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ggx_reflections.h"
+#include "brdf/ggx_reflections.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "ggx_reflections.h"
+#include "brdf/ggx_reflections.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/importance_sampler.h"

@@ -1,4 +1,4 @@
-#include "pbnbrdf/brdf/point_tree.h"
+#include "brdf/point_tree.h"
 
 #include <algorithm>
 #include <numeric>

@@ -6,8 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "base/text.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf::cli {
 namespace {

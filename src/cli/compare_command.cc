@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/text.h"
 #include "commands.h"
 #include "lpips_weights.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/open_image.h"
 #include "pbnbrdf/metrics/image_metrics.h"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <sstream>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf::cli {
 namespace {

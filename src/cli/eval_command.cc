@@ -5,8 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "pbnbrdf/brdf/analytic.h"
+#include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "report.h"
 #include "shared_flags.h"
 
@@ -29,7 +30,7 @@ Fitted OpenFit(const std::string& path) {
     const std::size_t parameters = model->parameters().size();
     return {std::move(model), parameters};
   }
-  auto network = std::make_unique<NeuralBrdf>(NeuralBrdf::Read(path));
+  auto network = std::make_unique<NeuralBrdf>(OpenNetwork(path));
   const std::size_t parameters = network->weights().size();
   return {std::move(network), parameters};
 }

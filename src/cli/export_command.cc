@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "pbnbrdf/export/export.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "shared_flags.h"
 
 DEFINE_string(format, "", "npy | h5 | merl | csv | c | glsl | mitsuba | onnx, see below");
@@ -22,7 +23,7 @@ int RunExport(const std::vector<std::string>&) {
     throw UsageError(error.what());
   }
   CheckWritable(FLAGS_out);
-  const NeuralBrdf network = NeuralBrdf::Read(FLAGS_fit);
+  const NeuralBrdf network = OpenNetwork(FLAGS_fit);
   std::vector<FileContent> files;
   try {
     files = ExportedFiles(network, format, FLAGS_out, FLAGS_name);

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "commands.h"
 #include "fit_flags.h"
 #include "fit_model.h"
@@ -13,8 +14,8 @@
 #include "fit_scene.h"
 #include "interrupt.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "report.h"
 #include "shared_flags.h"
 
@@ -61,7 +62,7 @@ void CheckDifferent(const std::vector<std::string>& outputs) {
 
 // Of the network in a file, which must have the shape and the encoding that the problem has.
 std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape) {
-  const NeuralBrdf network = NeuralBrdf::Read(path);
+  const NeuralBrdf network = OpenNetwork(path);
   const auto describe = [](const NetworkShape& s) {
     return StrCat(s.Description(), ", ", NameOf(kEncodings, s.encoding()), " encoding");
   };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "pbnbrdf/base/text.h"
+#include "base/text.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0: one for each core");
 DEFINE_string(encoding, "auto",

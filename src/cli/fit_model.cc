@@ -10,6 +10,7 @@
 #include "fit_record.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/fit_analytic.h"
+#include "pbnbrdf/problem/sampling.h"
 #include "report.h"
 #include "shared_flags.h"
 
@@ -34,6 +35,7 @@ DECLARE_int32(threads);
 namespace pbnbrdf::cli {
 namespace {
 
+constexpr std::size_t kDefaultSamples = 6000;
 constexpr std::size_t kMeasuredSamples = 100000;
 constexpr std::uint64_t kMeasuredSeed = 1;
 
@@ -57,11 +59,8 @@ AnalyticFitOptions ParseOptions() {
   AnalyticFitOptions options;
   options.lobes = FLAGS_lobes;
   options.threads = FLAGS_threads;
-  options.seed = FLAGS_seed;
-  options.sampling = ParseName(kSamplings, "sampling", FLAGS_sampling);
   options.loss_scale = FLAGS_loss_scale;
   if (IsGiven("function_tolerance")) options.function_tolerance = FLAGS_function_tolerance;
-  if (IsGiven("samples")) options.samples = FLAGS_samples;
   if (IsGiven("starts")) options.starts = FLAGS_starts;
   if (IsGiven("max_iterations")) options.max_iterations = FLAGS_max_iterations;
   options.Validate();
@@ -78,16 +77,16 @@ std::pair<const AnalyticModel*, AnalyticFitOptions> ParseModelFlags() {
 }
 
 nlohmann::ordered_json FitJson(const AnalyticFit& fit, const AnalyticFitOptions& options,
-                               const nlohmann::ordered_json& errors) {
+                               std::size_t samples, const nlohmann::ordered_json& errors) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(fit.brdf.Json());
   json["source"] = fit.brdf.Text();
   json["version"] = PBNBRDF_VERSION;
   json["material"] = FLAGS_material;
   json["scale_to_albedo"] = FLAGS_scale_to_albedo;
   json["lobes"] = fit.brdf.lobes();
-  json["seed"] = options.seed;
-  json["sampling"] = NameOf(kSamplings, options.sampling);
-  json["samples"] = fit.summary.samples;
+  json["seed"] = FLAGS_seed;
+  json["sampling"] = FLAGS_sampling;
+  json["samples"] = samples;
   json["loss_scale"] = options.loss_scale;
   json["cost"] = fit.summary.final_cost;
   json["iterations"] = fit.summary.iterations;
@@ -114,11 +113,16 @@ int RunModelFit() {
   }
   CheckWritable(FLAGS_out);
   const std::unique_ptr<Brdf> material = OpenMaterial();
-  const AnalyticFit fit = AboutMaterial(
-      [&, model = model, &options = options] { return FitAnalytic(*material, *model, options); });
+  const std::size_t count = IsGiven("samples") ? FLAGS_samples : kDefaultSamples;
+  std::vector<BrdfSample> samples;
+  const AnalyticFit fit = AboutMaterial([&, model = model, &options = options] {
+    samples = DrawSamples(*material, SampleSet::kTraining,
+                          ParseName(kSamplings, "sampling", FLAGS_sampling), count, FLAGS_seed);
+    return FitAnalytic(samples, material->IsIsotropic(), *model, options);
+  });
   const nlohmann::ordered_json errors = MeasureFit(
       *material, fit.brdf, fit.brdf.parameters().size(), kMeasuredSamples, kMeasuredSeed);
-  WriteFile(FLAGS_out, JsonText(FitJson(fit, options, errors)));
+  WriteFile(FLAGS_out, JsonText(FitJson(fit, options, samples.size(), errors)));
   if (!FLAGS_quiet && FLAGS_out != "-") {
     std::cout << FLAGS_out << ": " << fit.brdf.Description() << "; "
               << (fit.summary.converged ? "converged" : "stopped") << " after "

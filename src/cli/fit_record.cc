@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pbnbrdf/base/text.h"
+#include "base/text.h"
 
 DECLARE_string(terms);
 

@@ -12,15 +12,15 @@
 #include <optional>
 #include <sstream>
 
+#include "base/text.h"
+#include "base/timer.h"
 #include "fit_flags.h"
 #include "fit_record.h"
 #include "interrupt.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
-#include "pbnbrdf/base/timer.h"
 #include "pbnbrdf/brdf/scaled.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/demand.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "render_summary.h"
 #include "report.h"
 #include "shared_flags.h"

@@ -4,10 +4,10 @@
 #include <map>
 
 #include "commands.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf::cli {
 namespace {

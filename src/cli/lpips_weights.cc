@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "network/safetensors.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/network/safetensors.h"
 
 namespace pbnbrdf::cli {
 namespace {

@@ -8,14 +8,14 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
-#include "pbnbrdf/network/open_brdf.h"
 #include "pbnbrdf/render/render.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "render_summary.h"
 #include "shared_flags.h"
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/problem/sampling.h"
 
 namespace pbnbrdf::cli {
 
@@ -29,8 +30,9 @@ std::string EnergyVerdict(const Energy& energy) {
 
 nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                                   std::size_t samples, std::uint64_t seed) {
-  const HeldOutErrors errors = MeasureErrors(material, fit, samples, seed);
-  const ColorErrors colors = MeasureColorErrors(material, fit, samples, seed);
+  const std::vector<BrdfSample> heldout = HeldOutSamples(material, samples, seed);
+  const HeldOutErrors errors = MeasureErrors(heldout, fit);
+  const ColorErrors colors = MeasureColorErrors(heldout, fit);
   const Reciprocity reciprocity = MeasureReciprocity(fit);
   const Energy energy = MeasureEnergy(fit);
   const Energy of_material = MeasureEnergy(material, {.last_angle = kLastAngle});

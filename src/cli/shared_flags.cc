@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pbnbrdf/brdf/scaled.h"
-#include "pbnbrdf/network/open_brdf.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 DEFINE_string(material, "", "source of reflectance, see below; render: NAME=SOURCE, likewise");
 DEFINE_double(

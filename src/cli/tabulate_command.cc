@@ -3,7 +3,7 @@
 
 #include "commands.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/brdf/merl.h"
+#include "pbnbrdf/sources/merl.h"
 #include "shared_flags.h"
 
 namespace pbnbrdf::cli {

@@ -1,9 +1,9 @@
-#include "pbnbrdf/export/c_source.h"
+#include "export/c_source.h"
 
 #include <algorithm>
 
+#include "export/source_text.h"
 #include "pbnbrdf/base/error.h"
-#include "source_text.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,9 +1,9 @@
-#include "pbnbrdf/export/csv_table.h"
+#include "export/csv_table.h"
 
 #include <numbers>
 #include <vector>
 
-#include "pbnbrdf/base/text.h"
+#include "base/text.h"
 #include "pbnbrdf/brdf/half_diff.h"
 
 namespace pbnbrdf {

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
+#include "export/c_source.h"
+#include "export/csv_table.h"
+#include "export/glsl_source.h"
+#include "export/mitsuba_plugin.h"
+#include "export/onnx_model.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/brdf/merl.h"
-#include "pbnbrdf/export/c_source.h"
-#include "pbnbrdf/export/csv_table.h"
-#include "pbnbrdf/export/glsl_source.h"
-#include "pbnbrdf/export/mitsuba_plugin.h"
-#include "pbnbrdf/export/onnx_model.h"
-#include "pbnbrdf/network/nbrdf_files.h"
+#include "pbnbrdf/sources/merl.h"
+#include "pbnbrdf/sources/nbrdf_files.h"
 
 namespace pbnbrdf {
 namespace {

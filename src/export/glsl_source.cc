@@ -1,7 +1,7 @@
-#include "pbnbrdf/export/glsl_source.h"
+#include "export/glsl_source.h"
 
+#include "export/source_text.h"
 #include "pbnbrdf/base/error.h"
-#include "source_text.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,8 +1,8 @@
-#include "pbnbrdf/export/mitsuba_plugin.h"
+#include "export/mitsuba_plugin.h"
 
+#include "base/text.h"
 #include "mitsuba_plugin_text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 namespace {

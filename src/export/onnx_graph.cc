@@ -1,4 +1,4 @@
-#include "onnx_graph.h"
+#include "export/onnx_graph.h"
 
 #include <bit>
 

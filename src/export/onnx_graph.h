@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "protobuf.h"
+#include "export/protobuf.h"
 
 namespace pbnbrdf {
 

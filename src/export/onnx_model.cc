@@ -1,7 +1,7 @@
-#include "pbnbrdf/export/onnx_model.h"
+#include "export/onnx_model.h"
 
-#include "onnx_graph.h"
-#include "source_text.h"
+#include "export/onnx_graph.h"
+#include "export/source_text.h"
 
 namespace pbnbrdf {
 namespace {

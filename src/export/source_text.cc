@@ -1,11 +1,11 @@
-#include "source_text.h"
+#include "export/source_text.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 namespace {

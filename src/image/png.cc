@@ -9,9 +9,9 @@
 #include <cstring>
 #include <vector>
 
+#include "image/srgb.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/image/srgb.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/image/srgb.h"
+#include "image/srgb.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
-#include "pbnbrdf/kernels/cholesky.h"
+#include "kernels/cholesky.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pbnbrdf/kernels/kernels.h"
-#include "pbnbrdf/kernels/products.h"
+#include "kernels/kernels.h"
+#include "kernels/products.h"
 
 namespace pbnbrdf {
 namespace {

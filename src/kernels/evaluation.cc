@@ -1,5 +1,5 @@
 // Written with Highway: this file is compiled once for each instruction set (foreach_target.h).
-#include "pbnbrdf/kernels/evaluation.h"
+#include "kernels/evaluation.h"
 
 #include "disabled_targets.h"
 #undef HWY_TARGET_INCLUDE

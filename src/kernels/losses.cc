@@ -1,5 +1,5 @@
 // Written with Highway: this file is compiled once for each instruction set (foreach_target.h).
-#include "pbnbrdf/kernels/losses.h"
+#include "kernels/losses.h"
 
 #include <limits>
 

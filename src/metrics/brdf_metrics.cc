@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "pbnbrdf/brdf/half_diff.h"
-#include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/metrics/color.h"
 
 namespace pbnbrdf {
@@ -18,20 +17,11 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDarkLuminance = 0.1;
 constexpr double kPercentile = 0.95;
 
-// Held-out samples of the reference, and what the test says there.
-struct HeldOutValues {
-  std::vector<BrdfSample> reference;
-  std::vector<Rgb> test;
-};
-
-HeldOutValues EvaluateHeldOut(const Brdf& reference, const Brdf& test, std::size_t samples,
-                              std::uint64_t seed) {
-  HeldOutValues values;
-  values.reference = DrawSamples(reference, SampleSet::kHeldOut, Sampling::kUniform, samples, seed);
+std::vector<Rgb> ValuesAt(std::span<const BrdfSample> samples, const Brdf& brdf) {
   std::vector<DirectionPair> pairs;
-  for (const BrdfSample& s : values.reference) pairs.push_back(s.pair);
-  values.test.resize(pairs.size());
-  test.Evaluate(pairs, values.test);
+  for (const BrdfSample& s : samples) pairs.push_back(s.pair);
+  std::vector<Rgb> values(pairs.size());
+  brdf.Evaluate(pairs, values);
   return values;
 }
 
@@ -109,14 +99,13 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
 
 }  // namespace
 
-HeldOutErrors MeasureErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
-                            std::uint64_t seed) {
-  const auto [drawn, values] = EvaluateHeldOut(reference, test, samples, seed);
+HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& test) {
+  const std::vector<Rgb> values = ValuesAt(reference, test);
   HeldOutErrors errors;
   double squares = 0.0;
-  for (std::size_t n = 0; n < drawn.size(); ++n) {
-    const double cos_i = CosI(drawn[n].pair);
-    const Rgb &f = drawn[n].value, &g = values[n];
+  for (std::size_t n = 0; n < reference.size(); ++n) {
+    const double cos_i = CosI(reference[n].pair);
+    const Rgb &f = reference[n].value, &g = values[n];
     for (int c = 0; c < 3; ++c) {
       errors.mean_abs_log_error += std::abs(std::log1p(f[c] * cos_i) - std::log1p(g[c] * cos_i));
       squares += (f[c] - g[c]) * (f[c] - g[c]) * cos_i * cos_i;
@@ -124,21 +113,20 @@ HeldOutErrors MeasureErrors(const Brdf& reference, const Brdf& test, std::size_t
     errors.chromaticity_error +=
         std::abs(std::log1p(SquaredNorm(f, cos_i)) - std::log1p(SquaredNorm(g, cos_i)));
   }
-  const double count = static_cast<double>(drawn.size());
+  const double count = static_cast<double>(reference.size());
   errors.mean_abs_log_error /= 3.0 * count;
   errors.chromaticity_error /= count;
   errors.rmse = std::sqrt(squares / (3.0 * count));
-  errors.samples = drawn.size();
+  errors.samples = reference.size();
   return errors;
 }
 
-ColorErrors MeasureColorErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
-                               std::uint64_t seed) {
-  const auto [drawn, values] = EvaluateHeldOut(reference, test, samples, seed);
-  std::vector<double> delta_e(drawn.size()), dark;
-  for (std::size_t n = 0; n < drawn.size(); ++n) {
-    const double cos_i = CosI(drawn[n].pair);
-    const Rgb wanted = LitColor(drawn[n].value, cos_i);
+ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf& test) {
+  const std::vector<Rgb> values = ValuesAt(reference, test);
+  std::vector<double> delta_e(reference.size()), dark;
+  for (std::size_t n = 0; n < reference.size(); ++n) {
+    const double cos_i = CosI(reference[n].pair);
+    const Rgb wanted = LitColor(reference[n].value, cos_i);
     const Lab x = ToLab(wanted), y = ToLab(LitColor(values[n], cos_i));
     delta_e[n] = DeltaE2000(x, y);
     if (Luminance(wanted) <= kDarkLuminance) dark.push_back(HueChromaDifference(x, y));

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "metrics/planes.h"
 #include "pbnbrdf/metrics/color.h"
-#include "planes.h"
 
 namespace pbnbrdf {
 namespace {

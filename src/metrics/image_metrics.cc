@@ -5,11 +5,11 @@
 #include <limits>
 #include <numeric>
 
+#include "image/srgb.h"
+#include "metrics/planes.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/image/srgb.h"
 #include "pbnbrdf/metrics/color.h"
 #include "pbnbrdf/metrics/flip.h"
-#include "planes.h"
 
 namespace pbnbrdf {
 namespace {

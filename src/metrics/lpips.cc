@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "lpips_layers.h"
+#include "metrics/lpips_layers.h"
+#include "metrics/planes.h"
 #include "pbnbrdf/base/error.h"
-#include "planes.h"
 
 namespace pbnbrdf {
 namespace {

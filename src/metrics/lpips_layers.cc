@@ -1,10 +1,10 @@
 // Each convolution is a product of matrices: patches of the input, one a row, times the kernels.
-#include "lpips_layers.h"
+#include "metrics/lpips_layers.h"
 
 #include <algorithm>
 
-#include "pbnbrdf/kernels/products.h"
-#include "planes.h"
+#include "kernels/products.h"
+#include "metrics/planes.h"
 
 namespace pbnbrdf {
 namespace {

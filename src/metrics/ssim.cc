@@ -1,6 +1,6 @@
 // SSIM, as eqs. 13 to 16 of Wang et al. 2004 define it.
+#include "metrics/planes.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "planes.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,11 +1,11 @@
-#include "analytic_residual.h"
+#include "models/analytic_residual.h"
 
 #include <ceres/dynamic_autodiff_cost_function.h>
 
 #include <utility>
 
+#include "models/analytic_formulas.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/brdf/analytic_formulas.h"
 
 namespace pbnbrdf {
 namespace {

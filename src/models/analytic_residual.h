@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "free_parameters.h"
-#include "pbnbrdf/brdf/sampling.h"
+#include "models/free_parameters.h"
+#include "pbnbrdf/brdf/brdf.h"
 
 namespace pbnbrdf {
 

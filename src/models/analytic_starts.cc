@@ -1,4 +1,4 @@
-#include "analytic_starts.h"
+#include "models/analytic_starts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/brdf/brdf.h"
+#include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
 

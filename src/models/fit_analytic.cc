@@ -11,10 +11,10 @@
 #include <limits>
 #include <numeric>
 
-#include "analytic_residual.h"
-#include "analytic_starts.h"
+#include "base/timer.h"
+#include "models/analytic_residual.h"
+#include "models/analytic_starts.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/timer.h"
 
 namespace pbnbrdf {
 namespace {
@@ -135,7 +135,6 @@ void AnalyticFitOptions::Validate() const {
   if (!(loss_scale > 0.0) || !std::isfinite(loss_scale)) {
     Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
   }
-  at_least_1("samples", samples);
   at_least_1("first_samples", first_samples);
   at_least_1("starts", starts);
   at_least_1("max_iterations", max_iterations);
@@ -145,18 +144,15 @@ void AnalyticFitOptions::Validate() const {
   if (threads < 0) Fail("threads = ", threads, "; must be >= 0");
 }
 
-AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
-                        const AnalyticFitOptions& options) {
+AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
+                        const AnalyticModel& model, const AnalyticFitOptions& options) {
   options.Validate();
   const Timer timer;
   const int lobes = model.lobe.empty() ? 0 : options.lobes;
-  const std::vector<BrdfSample> samples =
-      DrawSamples(material, SampleSet::kTraining, options.sampling, options.samples, options.seed);
-  const auto first = std::span(samples).first(std::min(samples.size(), options.first_samples));
+  const auto first = samples.first(std::min(samples.size(), options.first_samples));
   const int most_threads = tbb::this_task_arena::max_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
                                             : tbb::task_arena::automatic);
-  const bool isotropic = material.IsIsotropic();
   std::vector<Candidate> at_hand;
   std::vector<double> scalars;
   Candidate best;
@@ -171,8 +167,7 @@ AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
     scalars = fitter.parameters().ToBoundedScalars(best.numbers);
   }
   AnalyticFit fit{AnalyticBrdf(model, lobes, scalars), {}};
-  fit.summary = {best.cost,      best.iterations, samples.size(),
-                 best.converged, timer.Seconds(), best.message};
+  fit.summary = {best.cost, best.iterations, best.converged, timer.Seconds(), best.message};
   return fit;
 }
 

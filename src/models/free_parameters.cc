@@ -1,4 +1,4 @@
-#include "free_parameters.h"
+#include "models/free_parameters.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pbnbrdf/brdf/analytic.h"
+#include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
 

@@ -1,9 +1,9 @@
-#include "pbnbrdf/network/batched_mlp.h"
+#include "network/batched_mlp.h"
 
 #include <algorithm>
 
-#include "pbnbrdf/kernels/passes.h"
-#include "pbnbrdf/kernels/products.h"
+#include "kernels/passes.h"
+#include "kernels/products.h"
 
 namespace pbnbrdf {
 namespace {

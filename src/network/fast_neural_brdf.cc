@@ -1,10 +1,10 @@
-#include "pbnbrdf/network/fast_neural_brdf.h"
+#include "network/fast_neural_brdf.h"
 
 #include <algorithm>
 
+#include "kernels/evaluation.h"
+#include "network/batched_mlp.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/kernels/evaluation.h"
-#include "pbnbrdf/network/batched_mlp.h"
 
 namespace pbnbrdf {
 namespace {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "network/batched_mlp.h"
+#include "network/fast_neural_brdf.h"
+#include "network/safetensors.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/network/batched_mlp.h"
-#include "pbnbrdf/network/fast_neural_brdf.h"
-#include "pbnbrdf/network/nbrdf_files.h"
-#include "pbnbrdf/network/safetensors.h"
 
 namespace pbnbrdf {
 namespace {
@@ -85,7 +84,6 @@ NeuralBrdf::NeuralBrdf(const NetworkShape& shape, std::vector<double> weights, M
 }
 
 NeuralBrdf NeuralBrdf::Read(const std::string& path) {
-  if (IsNbrdfFile(path)) return ReadNbrdf(path);
   const SafetensorsFile file = ReadSafetensors(path);
   const NetworkShape shape = ReadShape(path, file);
   if (file.tensors.size() != 2 * static_cast<std::size_t>(shape.num_layers())) {

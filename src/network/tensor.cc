@@ -1,4 +1,4 @@
-#include "pbnbrdf/network/tensor.h"
+#include "network/tensor.h"
 
 #include "pbnbrdf/base/error.h"
 

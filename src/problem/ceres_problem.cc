@@ -4,12 +4,12 @@
 #include <ceres/loss_function.h>
 
 #include "pbnbrdf/brdf/albedo.h"
-#include "pbnbrdf/problem/condensed_cost_function.h"
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
 #include "pbnbrdf/residuals/energy_residual.h"
 #include "pbnbrdf/residuals/log_residual.h"
 #include "pbnbrdf/residuals/network_residual.h"
+#include "problem/condensed_cost_function.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,9 +1,9 @@
-#include "pbnbrdf/problem/condensed_cost_function.h"
+#include "problem/condensed_cost_function.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pbnbrdf/problem/jittered_cholesky.h"
+#include "problem/jittered_cholesky.h"
 
 namespace pbnbrdf {
 

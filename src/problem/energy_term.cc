@@ -1,4 +1,4 @@
-#include "pbnbrdf/problem/energy_term.h"
+#include "problem/energy_term.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,11 +1,11 @@
-#include "pbnbrdf/problem/minibatch_gradient.h"
+#include "problem/minibatch_gradient.h"
 
 #include <algorithm>
 #include <numbers>
 
-#include "pbnbrdf/kernels/kernels.h"
-#include "pbnbrdf/kernels/losses.h"
-#include "pbnbrdf/kernels/passes.h"
+#include "kernels/kernels.h"
+#include "kernels/losses.h"
+#include "kernels/passes.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/problem/minibatches.h"
+#include "problem/minibatches.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "pbnbrdf/problem/normal_equations.h"
+#include "problem/normal_equations.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 
-#include "pbnbrdf/kernels/kernels.h"
-#include "pbnbrdf/kernels/products.h"
+#include "kernels/kernels.h"
+#include "kernels/products.h"
 
 namespace pbnbrdf {
 namespace {

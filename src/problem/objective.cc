@@ -6,12 +6,12 @@
 #include <limits>
 #include <numeric>
 
-#include "pbnbrdf/network/batched_mlp.h"
-#include "pbnbrdf/network/encoded_batches.h"
-#include "pbnbrdf/problem/energy_term.h"
-#include "pbnbrdf/problem/normal_equations.h"
+#include "network/batched_mlp.h"
+#include "network/encoded_batches.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
-#include "point_terms.h"
+#include "problem/energy_term.h"
+#include "problem/normal_equations.h"
+#include "problem/point_terms.h"
 
 namespace pbnbrdf {
 namespace {

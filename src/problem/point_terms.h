@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "pbnbrdf/base/aligned_vector.h"
-#include "pbnbrdf/brdf/sampling.h"
-#include "pbnbrdf/kernels/kernels.h"
-#include "pbnbrdf/kernels/losses.h"
+#include "base/aligned_vector.h"
+#include "kernels/kernels.h"
+#include "kernels/losses.h"
 #include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/problem/sampling.h"
 
 namespace pbnbrdf {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "pbnbrdf/base/text.h"
+#include "base/text.h"
 #include "pbnbrdf/render/affine.h"
 
 namespace pbnbrdf {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "base/timer.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/timer.h"
 #include "pbnbrdf/brdf/scaled.h"
 
 namespace pbnbrdf {

@@ -1,9 +1,9 @@
 // Wavefront OBJ, as far as geometry goes.
 #include <map>
 
+#include "base/text.h"
 #include "mesh_files.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 namespace {

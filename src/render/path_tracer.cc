@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pbnbrdf/base/timer.h"
+#include "base/timer.h"
 #include "random.h"
 #include "vertex.h"
 

@@ -2,10 +2,10 @@
 #include <bit>
 #include <cstring>
 
+#include "base/text.h"
 #include "mesh_files.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/names.h"
-#include "pbnbrdf/base/text.h"
 
 namespace pbnbrdf {
 namespace {

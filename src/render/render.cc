@@ -11,10 +11,10 @@
 #include <mutex>
 
 #include "arena.h"
+#include "base/timer.h"
 #include "materials.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/timer.h"
 #include "pixels.h"
 #include "tiles.h"
 

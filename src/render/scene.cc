@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/text.h"
 #include "json_value.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/image/exr.h"
 #include "sky.h"
 

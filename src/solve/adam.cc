@@ -1,4 +1,4 @@
-#include "pbnbrdf/solve/adam.h"
+#include "solve/adam.h"
 
 #include <tbb/task_group.h>
 
@@ -8,11 +8,11 @@
 #include <numeric>
 #include <utility>
 
+#include "kernels/adam_step.h"
+#include "kernels/kernels.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/kernels/adam_step.h"
-#include "pbnbrdf/kernels/kernels.h"
-#include "pbnbrdf/problem/minibatch_gradient.h"
-#include "pbnbrdf/problem/minibatches.h"
+#include "problem/minibatch_gradient.h"
+#include "problem/minibatches.h"
 
 namespace pbnbrdf {
 namespace {

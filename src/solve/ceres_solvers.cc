@@ -1,4 +1,4 @@
-#include "pbnbrdf/solve/ceres_solvers.h"
+#include "solve/ceres_solvers.h"
 
 #include <ceres/first_order_function.h>
 #include <ceres/gradient_problem.h>

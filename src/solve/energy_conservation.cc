@@ -1,4 +1,4 @@
-#include "energy_conservation.h"
+#include "solve/energy_conservation.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pbnbrdf/network/fast_neural_brdf.h"
+#include "network/fast_neural_brdf.h"
 #include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {

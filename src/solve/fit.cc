@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "energy_conservation.h"
-#include "pace.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/solve/adam.h"
-#include "pbnbrdf/solve/ceres_solvers.h"
-#include "pbnbrdf/solve/tiny_lm.h"
-#include "start.h"
+#include "solve/adam.h"
+#include "solve/ceres_solvers.h"
+#include "solve/energy_conservation.h"
+#include "solve/pace.h"
+#include "solve/start.h"
+#include "solve/tiny_lm.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "start.h"
+#include "solve/start.h"
 
 #include <algorithm>
 #include <cmath>

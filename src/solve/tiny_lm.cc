@@ -1,11 +1,11 @@
-#include "pbnbrdf/solve/tiny_lm.h"
+#include "solve/tiny_lm.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "kernels/cholesky.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/kernels/cholesky.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/base/text.h"
+#include "base/text.h"
 
 #include <limits>
 

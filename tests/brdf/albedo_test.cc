@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/brdf/analytic.h"
+#include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
 namespace {

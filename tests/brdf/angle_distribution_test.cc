@@ -4,7 +4,7 @@
 #include <random>
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/problem/sampling.h"
 
 namespace pbnbrdf {
 namespace {

@@ -2,10 +2,10 @@
 
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/albedo.h"
-#include "pbnbrdf/brdf/builtin.h"
-#include "pbnbrdf/brdf/diffuse.h"
-#include "pbnbrdf/brdf/merl.h"
-#include "pbnbrdf/brdf/microfacet.h"
+#include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/models/diffuse.h"
+#include "pbnbrdf/models/microfacet.h"
+#include "pbnbrdf/sources/merl.h"
 
 namespace pbnbrdf {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/albedo.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/builtin.h"
-#include "pbnbrdf/brdf/merl.h"
-#include "pbnbrdf/brdf/sgd.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/models/sgd.h"
+#include "pbnbrdf/sources/merl.h"
 
 namespace pbnbrdf {
 namespace {

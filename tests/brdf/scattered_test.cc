@@ -3,9 +3,9 @@
 #include <set>
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/brdf/scaled.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/problem/sampling.h"
 
 namespace pbnbrdf {
 namespace {

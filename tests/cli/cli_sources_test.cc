@@ -1,8 +1,8 @@
 // Every kind of material through the commands.
-#include "brdf/rgl_writer.h"
 #include "cli/cli_fixture.h"
-#include "network/npy_writer.h"
 #include "pbnbrdf/network/neural_brdf.h"
+#include "sources/npy_writer.h"
+#include "sources/rgl_writer.h"
 
 namespace pbnbrdf {
 namespace {

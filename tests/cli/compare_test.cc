@@ -2,10 +2,10 @@
 #include "cli/cli_fixture.h"
 #include "image/images.h"
 #include "metrics/lpips_weights.h"
+#include "network/safetensors.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "pbnbrdf/network/safetensors.h"
 
 namespace pbnbrdf {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <set>
 
+#include "base/text.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/base/text.h"
 #include "pbnbrdf/image/png.h"
 #include "process.h"
 #include "test_util.h"

@@ -2,7 +2,7 @@
 
 #include "hard_pairs.h"
 #include "pbnbrdf/brdf/half_diff.h"
-#include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/problem/sampling.h"
 #include "test_util.h"
 
 namespace pbnbrdf {

@@ -1,6 +1,6 @@
 #include "jacobian_methods.h"
 
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "test_util.h"
 
 namespace pbnbrdf {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/export/csv_table.h"
+#include "export/csv_table.h"
 
 #include <set>
 

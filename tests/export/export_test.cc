@@ -1,8 +1,9 @@
 #include "pbnbrdf/export/export.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 #include "export/networks.h"
-#include "pbnbrdf/brdf/merl.h"
-#include "pbnbrdf/network/nbrdf_files.h"
+#include "pbnbrdf/sources/merl.h"
+#include "pbnbrdf/sources/nbrdf_files.h"
 
 namespace pbnbrdf {
 namespace {
@@ -29,7 +30,7 @@ TEST(Export, NbrdfFilesAreReadBack) {
                                      {ExportFormat::kNpy, "a_fc1.npy"},
                                      {ExportFormat::kNpy, "fc1.npy"}}) {
     Export(network, format, folder / name);
-    const NeuralBrdf back = NeuralBrdf::Read(folder / name);
+    const NeuralBrdf back = OpenNetwork(folder / name);
     EXPECT_EQ(back.shape().Description(), "6-7-5-3 relu");
     EXPECT_EQ(back.shape().encoding(), Encoding::kCartesian);
     EXPECT_EQ(back.weights(), AsFloats(network.weights())) << name;
@@ -37,14 +38,14 @@ TEST(Export, NbrdfFilesAreReadBack) {
   EXPECT_EQ(folder.file_count(), 2u + 2 * 6);
   const NeuralBrdf deep = Relu({4, 4, 4, 4});
   Export(deep, ExportFormat::kH5, folder / "deep.h5");
-  EXPECT_EQ(NeuralBrdf::Read(folder / "deep.h5").weights(), AsFloats(deep.weights()));
+  EXPECT_EQ(OpenNetwork(folder / "deep.h5").weights(), AsFloats(deep.weights()));
 }
 
 TEST(Export, OneChannelBecomesThree) {
   TemporaryFolder folder;
   const NeuralBrdf one = RandomNetwork(Encoding::kCartesian, Activation::kRelu, {7, 5}, 4, 1);
   Export(one, ExportFormat::kH5, folder / "a.h5");
-  const NeuralBrdf back = NeuralBrdf::Read(folder / "a.h5");
+  const NeuralBrdf back = OpenNetwork(folder / "a.h5");
   EXPECT_EQ(back.NumChannels(), 3);
   const std::vector<Rgb> expected = LibraryValues(one, HardPairs());
   const std::vector<Rgb> values = LibraryValues(back, HardPairs());
@@ -62,7 +63,7 @@ TEST(Export, PublishedNetworksComeOutAsTheyWentIn) {
   }
   const std::string base = folder / "merl_nbrdf/npy/blue-acrylic_";
   const auto files =
-      ExportedFiles(NeuralBrdf::Read(base + "fc1.npy"), ExportFormat::kNpy, base + "fc1.npy");
+      ExportedFiles(OpenNetwork(base + "fc1.npy"), ExportFormat::kNpy, base + "fc1.npy");
   ASSERT_EQ(files.size(), 6u);
   for (const FileContent& file : files) {
     EXPECT_EQ(file.content, ReadFile(file.path, 1 << 20)) << file.path;  // to the last byte

@@ -1,8 +1,8 @@
 // What doesn't need ONNX's own packages; tests/interop/onnx_test.py runs the models.
-#include "pbnbrdf/export/onnx_model.h"
+#include "export/onnx_model.h"
 
 #include "export/networks.h"
-#include "protobuf.h"
+#include "export/protobuf.h"
 
 namespace pbnbrdf {
 namespace {

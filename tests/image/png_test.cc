@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "image/images.h"
+#include "image/srgb.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/open_image.h"
-#include "pbnbrdf/image/srgb.h"
 
 namespace pbnbrdf {
 namespace {

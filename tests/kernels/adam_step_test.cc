@@ -1,5 +1,5 @@
 // The kernel against the formulas that define it.
-#include "pbnbrdf/kernels/adam_step.h"
+#include "kernels/adam_step.h"
 
 #include "kernels_test_util.h"
 #include "test_util.h"

@@ -1,4 +1,4 @@
-#include "pbnbrdf/kernels/cholesky.h"
+#include "kernels/cholesky.h"
 
 #include "test_util.h"
 

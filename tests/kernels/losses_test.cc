@@ -1,5 +1,5 @@
 // Each kernel against the formula that defines it, and in its limits.
-#include "pbnbrdf/kernels/losses.h"
+#include "kernels/losses.h"
 
 #include "instruction_sets.h"
 #include "kernels_test_util.h"

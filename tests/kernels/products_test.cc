@@ -1,6 +1,6 @@
 // Each kernel against the plain loops that define it, at sizes around those of a register block and
 // on each instruction set.
-#include "pbnbrdf/kernels/products.h"
+#include "kernels/products.h"
 
 #include "instruction_sets.h"
 #include "kernels_test_util.h"

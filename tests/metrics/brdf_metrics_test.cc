@@ -1,10 +1,11 @@
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/problem/sampling.h"
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/metrics/color.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/models/builtin.h"
 
 namespace pbnbrdf {
 namespace {
@@ -66,7 +67,7 @@ class WavingBrdf final : public Brdf {
 
 TEST(HeldOutErrors, OfAnAnisotropicReferenceAreTakenOverPhiH) {
   const HeldOutErrors errors =
-      MeasureErrors(WavingBrdf(), LambertBrdf({kPi, kPi, kPi}), 20000, /*seed=*/1);
+      MeasureErrors(HeldOutSamples(WavingBrdf(), 20000, /*seed=*/1), LambertBrdf({kPi, kPi, kPi}));
   EXPECT_GT(errors.mean_abs_log_error, 0.05);
   // (sin^2 phi_h cos_i)^2 has the mean 3/8 mean cos_i^2, in [0, 3/8].
   EXPECT_GT(errors.rmse, 0.2);
@@ -91,7 +92,7 @@ TEST(Energy, OfLambertians) {
 
 TEST(HeldOutErrors, OfAMaterialAgainstItselfAreZero) {
   const auto gold = MakeBuiltin("satin-gold");
-  const HeldOutErrors errors = MeasureErrors(*gold, *gold, 1000, /*seed=*/1);
+  const HeldOutErrors errors = MeasureErrors(HeldOutSamples(*gold, 1000, /*seed=*/1), *gold);
   EXPECT_EQ(errors.mean_abs_log_error, 0.0);
   EXPECT_EQ(errors.rmse, 0.0);
   EXPECT_EQ(errors.chromaticity_error, 0.0);
@@ -101,7 +102,8 @@ TEST(HeldOutErrors, OfAMaterialAgainstItselfAreZero) {
 TEST(HeldOutErrors, OfTwoLambertiansAreBounded) {
   const double a = 0.4 / kPi, b = 0.8 / kPi;
   const HeldOutErrors errors =
-      MeasureErrors(LambertBrdf({0.4, 0.4, 0.4}), LambertBrdf({0.8, 0.8, 0.8}), 20000, /*seed=*/1);
+      MeasureErrors(HeldOutSamples(LambertBrdf({0.4, 0.4, 0.4}), 20000, /*seed=*/1),
+                    LambertBrdf({0.8, 0.8, 0.8}));
   EXPECT_GT(errors.mean_abs_log_error, 0.0);
   EXPECT_LT(errors.mean_abs_log_error, std::log1p(b) - std::log1p(a));
   EXPECT_LT(errors.rmse, b - a);
@@ -111,7 +113,7 @@ TEST(HeldOutErrors, OfTwoLambertiansAreBounded) {
 
 TEST(ColorErrors, OfAMaterialAgainstItselfAreZero) {
   const auto gold = MakeBuiltin("satin-gold");
-  const ColorErrors errors = MeasureColorErrors(*gold, *gold, 1000, /*seed=*/1);
+  const ColorErrors errors = MeasureColorErrors(HeldOutSamples(*gold, 1000, /*seed=*/1), *gold);
   EXPECT_EQ(errors.delta_e_mean, 0.0);
   EXPECT_EQ(errors.delta_e_p95, 0.0);
   EXPECT_EQ(errors.dark_hue_chroma_mean, 0.0);
@@ -141,7 +143,7 @@ class EvenlyLitBrdf final : public Brdf {
 TEST(ColorErrors, OfConstantColoursAreTheirDifference) {
   const Rgb x = {0.05, 0.02, 0.01}, y = {0.06, 0.02, 0.02};
   const ColorErrors errors =
-      MeasureColorErrors(EvenlyLitBrdf(x), EvenlyLitBrdf(y), 500, /*seed=*/1);
+      MeasureColorErrors(HeldOutSamples(EvenlyLitBrdf(x), 500, /*seed=*/1), EvenlyLitBrdf(y));
   const double delta_e = DeltaE2000(ToLab(x), ToLab(y));
   const double hue_chroma = HueChromaDifference(ToLab(x), ToLab(y));
   EXPECT_NEAR(errors.delta_e_mean, delta_e, 1e-9);
@@ -185,15 +187,16 @@ class SpottedBrdf final : public Brdf {
 
 TEST(ColorErrors, ThePercentileIsNotTheMean) {
   const LambertBrdf black({0, 0, 0});
-  const ColorErrors errors = MeasureColorErrors(black, SpottedBrdf(1e9), 20000, /*seed=*/1);
+  const ColorErrors errors =
+      MeasureColorErrors(HeldOutSamples(black, 20000, /*seed=*/1), SpottedBrdf(1e9));
   EXPECT_NEAR(errors.delta_e_mean, 10.0, 2.0);  // black to white is 100
   EXPECT_NEAR(errors.delta_e_p95, 100.0, 1e-9);
   EXPECT_EQ(errors.dark_samples, 20000u);
 }
 
 TEST(ColorErrors, NotANumberIsNotHidden) {
-  const ColorErrors errors =
-      MeasureColorErrors(LambertBrdf({0, 0, 0}), SpottedBrdf(NAN), 2000, /*seed=*/1);
+  const ColorErrors errors = MeasureColorErrors(
+      HeldOutSamples(LambertBrdf({0, 0, 0}), 2000, /*seed=*/1), SpottedBrdf(NAN));
   EXPECT_TRUE(std::isnan(errors.delta_e_mean));
   EXPECT_TRUE(std::isnan(errors.delta_e_p95));
 }

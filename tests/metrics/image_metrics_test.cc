@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "image/images.h"
-#include "pbnbrdf/image/srgb.h"
+#include "image/srgb.h"
 #include "pbnbrdf/metrics/color.h"
 
 namespace pbnbrdf {

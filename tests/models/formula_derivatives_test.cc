@@ -2,8 +2,8 @@
 #include <ceres/jet.h>
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/analytic_formulas.h"
+#include "models/analytic_formulas.h"
+#include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
 namespace {

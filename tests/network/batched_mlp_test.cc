@@ -1,5 +1,5 @@
 // Batched passes against the scalar network, with doubles and with full jets.
-#include "pbnbrdf/network/batched_mlp.h"
+#include "network/batched_mlp.h"
 
 #include <ceres/jet.h>
 

@@ -1,7 +1,7 @@
 #include "pbnbrdf/network/encoding.h"
 
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // The network in single precision against the same in double, on each instruction set.
-#include "pbnbrdf/network/fast_neural_brdf.h"
+#include "network/fast_neural_brdf.h"
 
 #include "brdf/direction_pairs.h"
 #include "instruction_sets.h"

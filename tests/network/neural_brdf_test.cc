@@ -2,11 +2,11 @@
 
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"
+#include "network/safetensors.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/importance_sampler.h"
 #include "pbnbrdf/network/mlp.h"
-#include "pbnbrdf/network/open_brdf.h"
-#include "pbnbrdf/network/safetensors.h"
+#include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf {
 namespace {

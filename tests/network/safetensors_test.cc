@@ -1,4 +1,4 @@
-#include "pbnbrdf/network/safetensors.h"
+#include "network/safetensors.h"
 
 #include <cstring>
 

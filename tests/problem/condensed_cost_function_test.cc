@@ -1,11 +1,11 @@
-#include "pbnbrdf/problem/condensed_cost_function.h"
+#include "problem/condensed_cost_function.h"
 
 #include <ceres/problem.h>
 
 #include <Eigen/Core>
 
 #include "network/random_network.h"
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 
 namespace pbnbrdf {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/problem/energy_term.h"
+#include "problem/energy_term.h"
 
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"

@@ -2,7 +2,7 @@
 
 #include <ceres/loss_function.h>
 
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "test_util.h"
 
 namespace pbnbrdf {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/problem/jittered_cholesky.h"
+#include "problem/jittered_cholesky.h"
 
 #include <Eigen/Core>
 

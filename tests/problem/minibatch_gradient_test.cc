@@ -1,11 +1,11 @@
 // The minibatch gradient against that of Objective with Loss::kAbsolute, and the energy term's
 // against central differences.
-#include "pbnbrdf/problem/minibatch_gradient.h"
+#include "problem/minibatch_gradient.h"
 
 #include <numbers>
 
 #include "network/random_network.h"
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/mlp.h"
 #include "pbnbrdf/problem/objective.h"
 

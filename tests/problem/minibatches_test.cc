@@ -1,10 +1,10 @@
 // Minibatches: every sample once an epoch, and quadratures that integrate.
-#include "pbnbrdf/problem/minibatches.h"
+#include "problem/minibatches.h"
 
 #include <algorithm>
 #include <set>
 
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "test_util.h"
 
 namespace pbnbrdf {

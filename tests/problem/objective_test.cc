@@ -10,7 +10,7 @@
 
 #include "network/random_network.h"
 #include "pbnbrdf/brdf/albedo.h"
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/mlp.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/energy_strata.h"

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "pbnbrdf/brdf/diffuse.h"
-#include "pbnbrdf/brdf/open_brdf.h"
+#include "pbnbrdf/models/diffuse.h"
 #include "pbnbrdf/render/render.h"
+#include "pbnbrdf/sources/open_brdf.h"
 #include "test_util.h"
 
 namespace pbnbrdf {
@@ -43,7 +43,7 @@ inline void AddRectangle(const Vec3& center, const Vec3& x, const Vec3& y,
 
 // "white:0.5" is Lambertian of that albedo; else what the brdf module opens.
 inline std::unique_ptr<Brdf> OpenTestMaterial(const std::string& source) {
-  if (!source.starts_with("white:")) return OpenMeasuredBrdf(source);
+  if (!source.starts_with("white:")) return OpenBrdf(source);
   const double rho = ParseNumber("rho", source.substr(6));
   return std::make_unique<LambertBrdf>(Rgb{rho, rho, rho});
 }

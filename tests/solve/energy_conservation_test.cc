@@ -1,10 +1,10 @@
 // Energy, conserved by whole fits, small ones.
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/albedo.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/scaled.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/solve/fit.h"
 #include "solve/one_channel.h"
 #include "solve/small_problem.h"

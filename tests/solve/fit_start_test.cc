@@ -1,6 +1,6 @@
 // What fits begin with: random weights, several of them, given ones; and what leads nowhere.
 #include "network/random_network.h"
-#include "pbnbrdf/brdf/builtin.h"
+#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/solve/fit.h"
 #include "solve/small_problem.h"
 

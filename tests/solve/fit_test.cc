@@ -6,10 +6,10 @@
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"
 #include "pbnbrdf/brdf/albedo.h"
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/builtin.h"
 #include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/models/builtin.h"
 #include "solve/one_channel.h"
 #include "solve/small_problem.h"
 
@@ -204,7 +204,7 @@ TEST(FitBrdf, OneChannelIsFittedByOneOutputWithEverySolver) {
     const Fit fit = FitBrdf(measured, problem, options);
     EXPECT_EQ(fit.network.NumChannels(), 1);
     EXPECT_EQ(fit.network.weights().size(), 7u * 6 + 7);
-    const HeldOutErrors errors = MeasureErrors(measured, fit.network, 1000, 1);
+    const HeldOutErrors errors = MeasureErrors(HeldOutSamples(measured, 1000, 1), fit.network);
     EXPECT_LT(errors.mean_abs_log_error, 0.02) << NameOf(kSolvers, solver);
     EXPECT_EQ(errors.samples, measured.Measurements().size() / 8);
   }
@@ -237,7 +237,7 @@ TEST(FitBrdf, GapsBetweenMeasurementsStayTame) {
   problem.hidden = {12, 12};
   const ScatteredBrdf measured(data);
   const Fit fit = FitBrdf(measured, problem, {});
-  EXPECT_LT(MeasureErrors(measured, fit.network, 1000, 1).mean_abs_log_error, 0.01);
+  EXPECT_LT(MeasureErrors(HeldOutSamples(measured, 1000, 1), fit.network).mean_abs_log_error, 0.01);
   EXPECT_LT(DirectionalAlbedo(fit.network, FromSpherical(0.5, 0.0))[0], 2.0);
 }
 

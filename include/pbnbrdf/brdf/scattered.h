@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "brdf/point_tree.h"
 #include "pbnbrdf/brdf/brdf.h"
-#include "pbnbrdf/brdf/point_tree.h"
 
 namespace pbnbrdf {
 

@@ -1,15 +1,14 @@
 // brdf_metrics.h: how well one Brdf reproduces another, and how physical it is.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <span>
 
 #include "pbnbrdf/brdf/albedo.h"
 
 namespace pbnbrdf {
 
-// Means over random pairs at which the reference is known: theta_h, theta_d uniform in [0, pi/2],
-// phi_d in [0, 2 pi), as phi_h if the reference is anisotropic; never those of a training set
-// (brdf/sampling.h).
+// Means over samples of a reference, such as HeldOutSamples (problem/sampling.h).
 struct HeldOutErrors {
   double mean_abs_log_error = 0.0;  // eq. 6 in absolute value, mean over channels too
   double chromaticity_error = 0.0;  // eq. 7 in absolute value
@@ -17,9 +16,8 @@ struct HeldOutErrors {
   std::size_t samples = 0;
 };
 
-// samples >= 1. Throws Error if the reference has next to no data.
-HeldOutErrors MeasureErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
-                            std::uint64_t seed);
+// reference: at least one sample.
+HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& test);
 
 // On the same samples the lit colour: what a display shows of the surface under one directional D65
 // light in which a white diffuse surface that faces it is white, pi f cos_i as linear RGB, cut to
@@ -33,8 +31,7 @@ struct ColorErrors {
 };
 
 // As MeasureErrors. A value that isn't finite makes the mean NaN.
-ColorErrors MeasureColorErrors(const Brdf& reference, const Brdf& test, std::size_t samples,
-                               std::uint64_t seed);
+ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf& test);
 
 // Mean over the whole domain of angles, below the horizon too, and channels, by the midpoint rule
 // with theta_h = (pi/2) t^2; over phi_h too if the Brdf is anisotropic. phi_d + pi is the exchange

@@ -1,7 +1,8 @@
-// fit_analytic.h: fits an analytic model to a material, the comparison of Ngan et al. [1].
+// fit_analytic.h: fits an analytic model to samples of a material, the comparison of Ngan et al. [1].
 //
-//   const auto material = pbnbrdf::OpenMeasuredBrdf("gold.binary");
-//   const auto fit = pbnbrdf::FitAnalytic(*material, pbnbrdf::FindAnalyticModel("ggx"), {});
+//   const auto material = pbnbrdf::OpenBrdf("gold.binary");
+//   const auto samples = pbnbrdf::DrawSamples(*material, ...);
+//   const auto fit = pbnbrdf::FitAnalytic(samples, /*isotropic=*/true, pbnbrdf::FindAnalyticModel("ggx"), {});
 //   std::cout << fit.brdf.Text();
 //
 // Minimises, over the parameters of the model's base and of its lobes within their bounds
@@ -15,24 +16,20 @@
 // [1] A. Ngan, F. Durand, W. Matusik. Experimental Analysis of BRDF Models. EGSR 2005.
 #pragma once
 
-#include <cstdint>
+#include <span>
 #include <string>
 
-#include "pbnbrdf/brdf/analytic.h"
-#include "pbnbrdf/brdf/sampling.h"
+#include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
 
 struct AnalyticFitOptions {
-  int lobes = 1;              // 1 to kMostLobes; models without lobes don't ask
-  double loss_scale = 0.001;  // > 0, |r| at which rho turns from square to linear
-  Sampling sampling = Sampling::kHighlight;
-  std::size_t samples = 6000;        // >= 1, of the last stage
-  std::size_t first_samples = 1000;  // >= 1, of the starts
+  int lobes = 1;                     // 1 to kMostLobes; models without lobes don't ask
+  double loss_scale = 0.001;         // > 0, |r| at which rho turns from square to linear
+  std::size_t first_samples = 1000;  // >= 1, that the starts see: the first of all
   int starts = 12;                   // >= 1: from narrow lobes to wide ones; the best ones go on
   int max_iterations = 100;          // >= 1, of the last stage
   double function_tolerance = 1e-5;  // stop when |cost change| < function_tolerance * cost
-  std::uint64_t seed = 1;            // of the samples
   int threads = 0;                   // 0: as many as the machine has
 
   // Throws Error, naming the field, its value and what it must be.
@@ -42,10 +39,9 @@ struct AnalyticFitOptions {
 struct AnalyticFitSummary {
   double final_cost = 0.0;  // per sample
   int iterations = 0;       // of the stages that led to the fit
-  std::size_t samples = 0;
-  bool converged = false;  // else max_iterations or the solver ended it
-  double seconds = 0.0;    // with sampling the material
-  std::string message;     // the solver's own words
+  bool converged = false;   // else max_iterations or the solver ended it
+  double seconds = 0.0;
+  std::string message;  // the solver's own words
 };
 
 struct AnalyticFit {
@@ -53,11 +49,11 @@ struct AnalyticFit {
   AnalyticFitSummary summary;
 };
 
-// An isotropic material gets an isotropic model, an anisotropic one a model whose axes are those of
+// samples: at least one. An isotropic material gets an isotropic model, an anisotropic one a model whose axes are those of
 // the shading frame. Two lobes fit no worse than one: a fit of one is among their starts. The same
 // arguments give the same parameters to the last bit, whatever the number of threads. Throws Error
-// as Validate does, if the material has next to no data, and if no start has a finite cost.
-AnalyticFit FitAnalytic(const Brdf& material, const AnalyticModel& model,
-                        const AnalyticFitOptions& options);
+// as Validate does, and if no start has a finite cost.
+AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
+                        const AnalyticModel& model, const AnalyticFitOptions& options);
 
 }  // namespace pbnbrdf

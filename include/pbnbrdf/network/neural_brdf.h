@@ -21,8 +21,7 @@ class NeuralBrdf final : public Brdf {
   NeuralBrdf(const NetworkShape& shape, std::vector<double> weights, Metadata metadata = {});
 
   // A safetensors file: tensors fc1.weight (out x in), fc1.bias (out), fc2.weight, ..., F64 or F32,
-  // and in __metadata__ at least "encoding", "activation" and "output" ("expm1"). If the name ends
-  // with ".h5", ".hdf5" or ".npy", a published network (nbrdf_files.h). Throws Error.
+  // and in __metadata__ at least "encoding", "activation" and "output" ("expm1"). Throws Error.
   static NeuralBrdf Read(const std::string& path);
 
   // The bytes of the file that Write writes.

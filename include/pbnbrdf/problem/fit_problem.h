@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "pbnbrdf/base/names.h"
-#include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/network/network_shape.h"
+#include "pbnbrdf/problem/sampling.h"
 
 namespace ceres {
 class LossFunction;

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "pbnbrdf/brdf/sampling.h"
 #include "pbnbrdf/problem/energy_strata.h"
-#include "pbnbrdf/problem/energy_term.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "pbnbrdf/problem/linearization.h"
+#include "pbnbrdf/problem/sampling.h"
+#include "problem/energy_term.h"
 
 namespace pbnbrdf {
 

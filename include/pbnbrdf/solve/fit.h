@@ -13,8 +13,8 @@
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
 #include "pbnbrdf/problem/fit_problem.h"
-#include "pbnbrdf/solve/adam.h"
-#include "pbnbrdf/solve/stage.h"
+#include "solve/adam.h"
+#include "solve/stage.h"
 
 namespace pbnbrdf {
 

@@ -1,0 +1,174 @@
+#include "pbnbrdf/problem/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/brdf/half_diff.h"
+#include "pbnbrdf/brdf/scattered.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kBatch = 1024;
+constexpr std::size_t kDrawsPerKnown = 10000;
+constexpr std::size_t kHeldOutOneIn = 8;
+constexpr std::size_t kFewMeasurements = 3000, kMeasuredToInterpolated = 3;
+constexpr double kPlacesPerUnit = 1e6;
+
+// Uniform on the grid (k + 1/2) 2^-32; std::uniform_real_distribution differs between libraries.
+double Uniform(std::mt19937_64& random) {
+  return (static_cast<double>(random() >> 32) + 0.5) * 0x1p-32;
+}
+
+// The same on the points with even k (training) or odd k (held out).
+double UniformOf(SampleSet set, std::mt19937_64& random) {
+  const std::uint64_t even = (random() >> 33) << 1;
+  return (static_cast<double>(even + (set == SampleSet::kHeldOut)) + 0.5) * 0x1p-32;
+}
+
+double DrawThetaH(Sampling sampling, std::mt19937_64& random) {
+  const double u = Uniform(random);
+  if (sampling == Sampling::kUniform) return 0.5 * kPi * u;
+  return 0.5 * kPi * (u < 0.5 ? 2.0 * u : std::pow(2.0 * u - 1.0, 4));
+}
+
+bool IsUsable(const Rgb& value) {
+  return std::all_of(value.begin(), value.end(),
+                     [](double v) { return v >= 0.0 && std::isfinite(v); });
+}
+
+// The finalizer of splitmix64 (Steele, Lea, Flood 2014).
+std::uint64_t Mix(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+// The same for all measurements at one place, but for rounding.
+std::uint64_t PlaceHash(const DirectionPair& pair, bool isotropic) {
+  std::uint64_t hash = 0;
+  PointTree::Point place = ScatteredPlace(pair, isotropic);
+  if (isotropic) place[3] = std::abs(place[3]);
+  for (double x : place) {
+    hash = Mix(hash + static_cast<std::uint64_t>(std::llround(x * kPlacesPerUnit)) + 1);
+  }
+  return hash;
+}
+
+// The measurements of the set: those of the lowest hashes are held out, at least one.
+std::vector<BrdfSample> PartOf(const std::vector<BrdfSample>& all, SampleSet set, bool isotropic) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    order.emplace_back(PlaceHash(all[n].pair, isotropic), n);
+  }
+  std::sort(order.begin(), order.end());
+  const std::size_t held_out = std::max<std::size_t>(all.size() / kHeldOutOneIn, 1);
+  const std::size_t begin = set == SampleSet::kHeldOut ? 0 : held_out;
+  const std::size_t end = set == SampleSet::kHeldOut ? held_out : all.size();
+  std::vector<BrdfSample> part;
+  for (std::size_t k = begin; k < end; ++k) part.push_back(all[order[k].second]);
+  return part;
+}
+
+// Fisher and Yates; std::shuffle differs between libraries.
+void Shuffle(std::vector<BrdfSample>* samples, std::mt19937_64* random) {
+  for (std::size_t n = samples->size(); n > 1; --n)
+    std::swap((*samples)[n - 1], (*samples)[(*random)() % n]);
+}
+
+}  // namespace
+
+SampleStream::SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed)
+    : brdf_(brdf), set_(set), angles_(std::move(angles)), random_(seed) {
+  const std::vector<BrdfSample> all = brdf.Measurements();
+  if (all.empty()) return;
+  measured_ = PartOf(all, set, brdf.IsIsotropic());
+  if (measured_.empty()) Fail("too little data: a single measurement");
+  if (set == SampleSet::kTraining) AddInterpolated();
+  Shuffle(&measured_, &random_);
+}
+
+void SampleStream::AddInterpolated() {
+  ScatteredData data;
+  data.isotropic = brdf_.IsIsotropic();
+  data.samples = measured_;
+  const ScatteredBrdf interpolated(std::move(data));
+  const std::size_t part = measured_.size();
+  while (measured_.size() < kFewMeasurements) {
+    measured_.insert(measured_.end(), measured_.begin(),
+                     measured_.begin() + static_cast<std::ptrdiff_t>(part));
+  }
+  std::vector<DirectionPair> pairs;
+  while (pairs.size() < measured_.size() / kMeasuredToInterpolated) {
+    const DirectionPair pair = DrawPair();
+    if (pair.AboveHorizon()) pairs.push_back(pair);
+  }
+  std::vector<Rgb> values(pairs.size());
+  interpolated.Evaluate(pairs, values);
+  for (std::size_t n = 0; n < pairs.size(); ++n) measured_.push_back({pairs[n], values[n]});
+}
+
+DirectionPair SampleStream::DrawPair() {
+  if (angles_.asked && Uniform(random_) >= angles_.floor) {
+    std::array<double, 5> u;
+    for (double& x : u) x = Uniform(random_);
+    u[1] = UniformOf(set_, random_);
+    return FromAngles(angles_.asked->Draw(u));
+  }
+  RusinkiewiczAngles angles;
+  angles.theta_h = DrawThetaH(angles_.sampling, random_);
+  angles.theta_d = 0.5 * kPi * UniformOf(set_, random_);
+  angles.phi_d = 2.0 * kPi * Uniform(random_);
+  if (!brdf_.IsIsotropic()) angles.phi_h = 2.0 * kPi * Uniform(random_);
+  return FromAngles(angles);
+}
+
+std::size_t SampleStream::most() const {
+  return measured_.empty() ? std::numeric_limits<std::size_t>::max() : measured_.size();
+}
+
+void SampleStream::Draw(std::size_t count, std::vector<BrdfSample>* samples) {
+  if (measured_.empty()) return DrawAngles(count, samples);
+  const std::size_t end = next_ + std::min(count, measured_.size() - next_);
+  for (; next_ < end; ++next_) samples->push_back(measured_[next_]);
+}
+
+void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* samples) {
+  const std::size_t end = samples->size() + count;
+  samples->reserve(end);
+  std::vector<DirectionPair> pairs;
+  std::vector<Rgb> values(kBatch);
+  for (std::size_t drawn = 0; samples->size() < end; ++drawn) {
+    const std::size_t missing = end - samples->size();
+    if (drawn >= kDrawsPerKnown * (count - missing + 100)) {
+      Fail("too little data: ", count - missing, " of ", drawn, " random angles are known");
+    }
+    const DirectionPair pair = DrawPair();
+    if (brdf_.IsKnown(pair)) pairs.push_back(pair);
+    if (pairs.size() < std::min(kBatch, missing)) continue;
+    brdf_.Evaluate(pairs, std::span(values).first(pairs.size()));
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      if (IsUsable(values[n])) samples->push_back({pairs[n], values[n]});
+    }
+    pairs.clear();
+  }
+}
+
+std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const SampleAngles& angles,
+                                    std::size_t count, std::uint64_t seed) {
+  std::vector<BrdfSample> samples;
+  SampleStream(brdf, set, angles, seed).Draw(count, &samples);
+  return samples;
+}
+
+std::vector<BrdfSample> HeldOutSamples(const Brdf& material, std::size_t count,
+                                       std::uint64_t seed) {
+  return DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform, count, seed);
+}
+
+}  // namespace pbnbrdf

@@ -1,0 +1,195 @@
+#include "sources/keras_h5.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <iterator>
+#include <string_view>
+
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/network/network_shape.h"
+#include "sources/hdf5_handles.h"
+
+namespace pbnbrdf {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "HDF5 files are little-endian");
+
+constexpr std::uint64_t kFreeBlock = 16;  // bytes of a local heap's smallest free block
+constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+
+using Handle = Hdf5Handle;
+
+[[noreturn]] void FailDamaged(const std::string& place) {
+  Fail(place, ": truncated or damaged HDF5 file (", Hdf5Reason(), "); copy it again");
+}
+
+std::uint64_t LoadUint64(std::string_view bytes, std::size_t at) {
+  std::uint64_t value;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+// Whether the local heap at `heap` has a free list that runs in a circle: "HEAP", 4 bytes, then the
+// data segment's size, the offset of the first free block in it, and its address. A free block
+// begins with the offset of the next, 1 at the end, and its own size. Counts down *blocks_left.
+bool FreeListIsCircular(std::string_view bytes, std::size_t heap, std::uint64_t* blocks_left) {
+  constexpr std::uint64_t kEnd = 1, kHeader = 32;
+  if (bytes.size() - heap < kHeader) return false;
+  const std::uint64_t segment = LoadUint64(bytes, heap + 24);
+  if (segment > bytes.size()) return false;
+  const std::uint64_t size = std::min(LoadUint64(bytes, heap + 8), bytes.size() - segment);
+  std::uint64_t block = LoadUint64(bytes, heap + 16);
+  while (block != kEnd) {
+    if (size < kFreeBlock || block > size - kFreeBlock) return false;  // HDF5 sees this by itself
+    if (*blocks_left == 0) return true;
+    --*blocks_left;
+    block = LoadUint64(bytes, segment + block);
+  }
+  return false;
+}
+
+// Throws Error if HDF5 would follow a circle until memory runs out, as versions to 1.10 do (the
+// heaps hold groups' names).
+void CheckHeaps(const std::string& path, std::string_view bytes) {
+  constexpr std::string_view kHeap = "HEAP";
+  std::uint64_t blocks_left = bytes.size() / kFreeBlock;  // all heaps' together fit into the file
+  for (std::size_t at = bytes.find(kHeap); at != bytes.npos; at = bytes.find(kHeap, at + 1)) {
+    if (FreeListIsCircular(bytes, at, &blocks_left)) {
+      Fail(path, ": damaged HDF5 file (the heap at byte ", at, " runs in a circle); copy it again");
+    }
+  }
+}
+
+// Throws Error unless the file begins like one of HDF5 with addresses and lengths of 8 bytes, the
+// only ones that Keras writes and CheckHeaps looks through.
+void CheckSuperblock(const std::string& path, std::string_view bytes) {
+  constexpr std::size_t kSizesAt[] = {13, 13, 9, 9};  // by the superblock's version
+  if (!bytes.starts_with(kSignature)) {
+    Fail(path, ": not an HDF5 file; expected a network that Keras saved");
+  }
+  const std::size_t version = bytes.size() < 16 ? ~0u : static_cast<unsigned char>(bytes[8]);
+  if (version >= std::size(kSizesAt) || bytes[kSizesAt[version]] != 8 ||
+      bytes[kSizesAt[version] + 1] != 8) {
+    Fail(path, ": truncated or damaged HDF5 file (its first bytes); copy it again");
+  }
+}
+
+// Access to `bytes` as a file, for H5Fopen: it then reads nothing from disk.
+Handle ImageAccess(std::string bytes) {
+  constexpr std::size_t kIncrement = 1 << 16;
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(access.get(), kIncrement, /*backing_store=*/false);
+  H5Pset_file_image(access.get(), bytes.data(), bytes.size());
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  return access;
+}
+
+// Whether `group` has `name` as a link within the file; soft and external links don't count.
+bool Has(const std::string& place, const Handle& group, const std::string& name) {
+  const htri_t exists = H5Lexists(group.get(), name.c_str(), H5P_DEFAULT);
+  if (exists < 0) FailDamaged(place);
+  H5L_info_t info;
+  if (exists == 0) return false;
+  if (H5Lget_info(group.get(), name.c_str(), &info, H5P_DEFAULT) < 0) FailDamaged(place);
+  return info.type == H5L_TYPE_HARD;
+}
+
+Handle OpenObject(const std::string& place, const Handle& group, const std::string& name,
+                  H5I_type_t type) {
+  if (!Has(place, group, name)) {
+    Fail(place,
+         " is missing; expected Keras layers dense_1, dense_2, ... with kernel:0 and bias:0");
+  }
+  Handle object(H5Oopen(group.get(), name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (!object) FailDamaged(place);
+  if (H5Iget_type(object.get()) != type) {
+    Fail(place, " is not a ", type == H5I_GROUP ? "group" : "dataset",
+         "; save it from Keras again");
+  }
+  return object;
+}
+
+// Bytes of an element. Throws Error unless it is an IEEE float of 4 or 8 bytes.
+std::size_t ElementSize(const std::string& place, const Handle& dataset) {
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  if (!type) FailDamaged(place);
+  for (hid_t known : {H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE}) {
+    if (H5Tequal(type.get(), known) > 0) return H5Tget_size(known);
+  }
+  Fail(place, " is not of type float32 or float64; save it as float32");
+}
+
+// Throws Error unless the elements lie in one piece within the file: chunks may be compressed to
+// far less than they need in memory, and other files are none of ours.
+void CheckStorage(const std::string& place, const Handle& dataset) {
+  const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+  if (!creation) FailDamaged(place);
+  if (H5Pget_layout(creation.get()) != H5D_CONTIGUOUS ||
+      H5Pget_external_count(creation.get()) != 0) {
+    Fail(place, " is not stored contiguously; convert the file: h5repack -f NONE -l CONTI IN OUT");
+  }
+}
+
+std::vector<std::int64_t> Shape(const std::string& place, const Handle& dataset) {
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  if (!space) FailDamaged(place);
+  if (H5Sget_simple_extent_type(space.get()) == H5S_NULL) return {0};
+  std::array<hsize_t, H5S_MAX_RANK> extents;
+  const int rank = H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
+  if (rank < 0) FailDamaged(place);
+  return {extents.begin(), extents.begin() + rank};
+}
+
+Tensor ReadDataset(const std::string& place, const Handle& group, const std::string& name,
+                   std::size_t file_size) {
+  const Handle dataset = OpenObject(place, group, name, H5I_DATASET);
+  const std::size_t size = ElementSize(place, dataset);
+  CheckStorage(place, dataset);
+  Tensor tensor;
+  tensor.shape = Shape(place, dataset);
+  const std::uint64_t count = ElementCount(tensor.shape, file_size / size);
+  if (count == 0 || H5Dget_storage_size(dataset.get()) != count * size) {
+    Fail(place, ": its shape, ", ShapeText(tensor.shape), ", doesn't fit its data; copy it again");
+  }
+  tensor.values.resize(count);
+  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+              tensor.values.data()) < 0) {
+    FailDamaged(place);
+  }
+  return tensor;
+}
+
+}  // namespace
+
+std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
+  const std::string bytes = ReadFile(path, kLargestWeightFile);
+  CheckSuperblock(path, bytes);
+  CheckHeaps(path, bytes);
+  const Hdf5Turn turn;
+  const Handle access = ImageAccess(bytes);
+  // HDF5 wants a name that no file has: there is none below a regular file.
+  const std::string image = path + "/image";
+  const Handle file(H5Fopen(image.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (!file) FailDamaged(path);
+  std::vector<KerasDenseLayer> layers;
+  for (int k = 1; k <= NetworkShape::kMostLayers; ++k) {
+    const std::string name = StrCat("dense_", k), place = StrCat(path, ": dataset /", name);
+    if (k > 1 && !Has(place, file, name)) break;
+    // Keras repeats the layer's name.
+    const Handle outer = OpenObject(place, file, name, H5I_GROUP);
+    const std::string inner_place = StrCat(place, "/", name);
+    const Handle inner = OpenObject(inner_place, outer, name, H5I_GROUP);
+    const auto read = [&](const char* dataset) {
+      return ReadDataset(StrCat(inner_place, "/", dataset), inner, dataset, bytes.size());
+    };
+    layers.push_back({name, read("kernel:0"), read("bias:0")});
+  }
+  return layers;
+}
+
+}  // namespace pbnbrdf

@@ -1,0 +1,169 @@
+#include "pbnbrdf/sources/nbrdf_files.h"
+
+#include <cmath>
+#include <string_view>
+
+#include "pbnbrdf/base/error.h"
+#include "sources/keras_h5.h"
+#include "sources/npy.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr std::string_view kFirstNpy = "fc1.npy";
+constexpr int kNpyLayers = 3;
+
+// A tensor and how messages name it.
+struct Named {
+  std::string place;
+  Tensor tensor;
+};
+
+struct Layer {
+  Named kernel, bias;  // in x out; out
+};
+
+bool IsKeras(const std::string& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
+
+std::vector<Layer> ReadKerasLayers(const std::string& path) {
+  std::vector<Layer> layers;
+  for (KerasDenseLayer& layer : ReadKerasDenseLayers(path)) {
+    const std::string group = StrCat(path, ": dataset /", layer.name, "/", layer.name);
+    layers.push_back({{group + "/kernel:0", std::move(layer.kernel)},
+                      {group + "/bias:0", std::move(layer.bias)}});
+  }
+  return layers;
+}
+
+std::vector<Layer> ReadNpyLayers(const std::string& path) {
+  if (!path.ends_with(kFirstNpy)) {
+    Fail(path, ": name the first layer's file, ...", kFirstNpy,
+         "; fc2, fc3, b1, b2 and b3 are read from beside it");
+  }
+  const std::string base = path.substr(0, path.size() - kFirstNpy.size());
+  std::vector<Layer> layers;
+  for (int k = 1; k <= kNpyLayers; ++k) {
+    const std::string kernel = StrCat(base, "fc", k, ".npy"), bias = StrCat(base, "b", k, ".npy");
+    layers.push_back({{kernel, ReadNpy(kernel)}, {bias, ReadNpy(bias)}});
+  }
+  return layers;
+}
+
+void CheckFinite(const Named& named) {
+  for (double value : named.tensor.values) {
+    if (!std::isfinite(value)) {
+      Fail(named.place, ": holds a value that is not finite; the file or its training is damaged");
+    }
+  }
+}
+
+// Throws Error unless the layer maps `in` values to some number that its bias agrees with, and the
+// last one to three.
+void CheckLayer(const Layer& layer, std::int64_t in, bool last) {
+  const auto& kernel = layer.kernel.tensor.shape;
+  const auto& bias = layer.bias.tensor.shape;
+  if (kernel.size() != 2 || kernel[0] != in || (last && kernel[1] != NetworkShape::kChannels)) {
+    Fail(layer.kernel.place, ": shape ", ShapeText(kernel), ", expected ", in, " x ",
+         last ? "3, the last layer's" : "units", "; kernels are inputs x outputs");
+  }
+  if (bias.size() != 1 || bias[0] != kernel[1]) {
+    Fail(layer.bias.place, ": shape ", ShapeText(bias), ", expected ", kernel[1],
+         ", the outputs of its layer's kernel");
+  }
+  CheckFinite(layer.kernel);
+  CheckFinite(layer.bias);
+}
+
+// The layers' sizes but the last. Throws Error.
+std::vector<int> HiddenSizes(const std::vector<Layer>& layers) {
+  std::vector<int> sizes;
+  std::int64_t in = kEncodedSize;
+  for (const Layer& layer : layers) {
+    CheckLayer(layer, in, /*last=*/&layer == &layers.back());
+    in = layer.kernel.tensor.shape[1];
+    sizes.push_back(static_cast<int>(in));
+  }
+  sizes.pop_back();
+  return sizes;
+}
+
+// [W | b] of a layer, appended: W is the kernel's transpose.
+void AppendBlock(const Layer& layer, std::vector<double>* weights) {
+  const Tensor& kernel = layer.kernel.tensor;
+  const std::int64_t in = kernel.shape[0], out = kernel.shape[1];
+  for (std::int64_t o = 0; o < out; ++o) {
+    for (std::int64_t i = 0; i < in; ++i) weights->push_back(kernel.values[i * out + o]);
+    weights->push_back(layer.bias.tensor.values[o]);
+  }
+}
+
+// The reverse of AppendBlock, for all layers.
+std::vector<KerasDenseLayer> DenseLayers(const NeuralBrdf& network) {
+  const NetworkShape& shape = network.shape();
+  std::vector<KerasDenseLayer> layers;
+  for (int l = 0; l < shape.num_layers(); ++l) {
+    const int in = shape.in(l), out = shape.out(l);
+    const double* block = network.weights().data() + shape.offset(l);
+    KerasDenseLayer layer = {StrCat("dense_", l + 1), {{in, out}, {}}, {{out}, {}}};
+    for (int i = 0; i < in; ++i) {
+      for (int o = 0; o < out; ++o) layer.kernel.values.push_back(block[o * (in + 1) + i]);
+    }
+    for (int o = 0; o < out; ++o) layer.bias.values.push_back(block[o * (in + 1) + in]);
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+void CheckIsNbrdf(const NeuralBrdf& network) {
+  const NetworkShape& shape = network.shape();
+  if (shape.encoding() != Encoding::kCartesian || shape.activation() != Activation::kRelu) {
+    Fail("an NBRDF network has relu units behind the cartesian encoding, this one is ",
+         NameOf(kActivations, shape.activation()), ", ", NameOf(kEncodings, shape.encoding()),
+         "; fit with --encoding=cartesian --activation=relu");
+  }
+  for (double weight : network.weights()) {
+    if (!std::isfinite(static_cast<float>(weight))) Fail("weight ", weight, " is beyond float32");
+  }
+}
+
+}  // namespace
+
+bool IsNbrdfFile(const std::string& path) { return IsKeras(path) || path.ends_with(".npy"); }
+
+NeuralBrdf ReadNbrdf(const std::string& path) {
+  const bool keras = IsKeras(path);
+  const std::vector<Layer> layers = keras ? ReadKerasLayers(path) : ReadNpyLayers(path);
+  std::vector<int> hidden = HiddenSizes(layers);
+  std::vector<double> weights;
+  for (const Layer& layer : layers) AppendBlock(layer, &weights);
+  try {
+    const NetworkShape shape(Encoding::kCartesian, std::move(hidden), Activation::kRelu);
+    return NeuralBrdf(shape, std::move(weights),
+                      {{"origin", keras ? "NBRDF, Keras HDF5 file" : "NBRDF, NumPy files"}});
+  } catch (const Error& error) {
+    Fail(path, ": ", error.what());
+  }
+}
+
+std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path) {
+  CheckIsNbrdf(network);
+  const std::vector<KerasDenseLayer> layers = DenseLayers(network.WithRgbOutputs());
+  if (IsKeras(path)) return {{path, KerasH5Bytes(layers)}};
+  if (!path.ends_with(kFirstNpy)) {
+    Fail(path, ": name the first layer's file, ...", kFirstNpy,
+         "; fc2, fc3, b1, b2 and b3 are written beside it");
+  }
+  if (layers.size() != kNpyLayers) {
+    Fail("the NumPy files hold ", kNpyLayers, " layers, a ", network.shape().Description(),
+         " network has ", layers.size());
+  }
+  const std::string base = path.substr(0, path.size() - kFirstNpy.size());
+  std::vector<FileContent> files;
+  for (int k = 1; k <= kNpyLayers; ++k) {
+    files.push_back({StrCat(base, "fc", k, ".npy"), NpyBytes(layers[k - 1].kernel)});
+    files.push_back({StrCat(base, "b", k, ".npy"), NpyBytes(layers[k - 1].bias)});
+  }
+  return files;
+}
+
+}  // namespace pbnbrdf

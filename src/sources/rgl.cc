@@ -1,0 +1,318 @@
+#include "pbnbrdf/sources/rgl.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "pbnbrdf/base/error.h"
+#include "sources/cie.h"
+#include "sources/tensor_file.h"
+#include "sources/warp_tables.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kLeastJacobian = 1e-6;
+constexpr double kLastKnown = 85.0 * kPi / 180.0;
+constexpr float kLongestWave = 1e5f;       // nm
+constexpr std::size_t kShownText = 60;     // of a file's own description
+constexpr std::size_t kMostIsotropic = 2;  // phi_i nodes
+constexpr float kLastElevation = 1.5708f;  // pi / 2, rounded up
+constexpr float kLastAzimuth = 6.28319f;   // 2 pi, rounded up
+
+using Shape = std::vector<std::size_t>;
+
+struct Table {
+  std::size_t rows = 0, columns = 0;
+  std::vector<float> values;
+
+  double At(double x, double y) const { return Bilinear(values.data(), rows, columns, x, y); }
+};
+
+// theta of a unit vector, exact near the pole, where acos isn't.
+double Elevation(const Vec3& w) {
+  return 2.0 * std::asin(std::min(1.0, 0.5 * Length(w - Vec3{0.0, 0.0, 1.0})));
+}
+
+double Azimuth(const Vec3& w) { return std::atan2(w.y, w.x); }
+
+double ElevationColumn(double theta) { return std::sqrt(2.0 * theta / kPi); }
+
+double AzimuthRow(double phi) {
+  const double v = (phi + kPi) / (2.0 * kPi);
+  return v - std::floor(v);
+}
+
+// The place of an angle among ascending nodes, of which there may be only one.
+NodePosition PlaceAmong(const std::vector<float>& nodes, double angle) {
+  if (nodes.size() == 1) return {0, 0.0};
+  const auto above = std::upper_bound(nodes.begin(), nodes.end(), angle);
+  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(nodes.size()) - 2;
+  const auto below = std::clamp<std::ptrdiff_t>(above - nodes.begin() - 1, 0, last);
+  const double width = double(nodes[below + 1]) - nodes[below];
+  return {static_cast<std::size_t>(below), std::clamp((angle - nodes[below]) / width, 0.0, 1.0)};
+}
+
+std::vector<float> ReadNodes(const TensorFile& file, const std::string& name, float least,
+                             float most) {
+  const std::vector<float> nodes = file.Floats(name, file.FloatShape(name, 1));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (!(nodes[k] >= least && nodes[k] <= most) || (k > 0 && !(nodes[k] > nodes[k - 1]))) {
+      Fail(file.path(), ": element ", k, " of field '", name, "' is ", nodes[k],
+           "; must ascend from ", least, " to ", most);
+    }
+  }
+  return nodes;
+}
+
+// Two last sizes of a field's shape; at least 2 x 2.
+Table ReadShape(const TensorFile& file, const std::string& name, const Shape& shape) {
+  Table table{shape[shape.size() - 2], shape[shape.size() - 1], {}};
+  if (table.rows < 2 || table.columns < 2) {
+    Fail(file.path(), ": field '", name, "' is ", ShapeText(shape),
+         "; its tables must be at least 2 x 2");
+  }
+  return table;
+}
+
+std::vector<float> ReadNonNegative(const TensorFile& file, const std::string& name,
+                                   const Shape& shape) {
+  std::vector<float> values = file.Floats(name, shape);
+  const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return v < 0.0f; });
+  if (bad != values.end()) {
+    Fail(file.path(), ": element ", bad - values.begin(), " of field '", name, "' is ", *bad,
+         "; must be >= 0");
+  }
+  return values;
+}
+
+Table ReadTable(const TensorFile& file, const std::string& name) {
+  const Shape shape = file.FloatShape(name, 2);
+  Table table = ReadShape(file, name, shape);
+  table.values = ReadNonNegative(file, name, shape);
+  return table;
+}
+
+WarpTables ReadWarp(const TensorFile& file, const std::string& name, std::size_t n_phi,
+                    std::size_t n_theta, Table* size) {
+  Shape shape = file.FloatShape(name, 4);
+  *size = ReadShape(file, name, shape);
+  shape[0] = n_phi, shape[1] = n_theta;  // what they must be
+  return WarpTables(ReadNonNegative(file, name, shape), size->rows, size->columns);
+}
+
+}  // namespace
+
+struct RglBrdf::Tables {
+  // Where a pair lies in all the tables.
+  struct Place {
+    TableBlend blend;
+    SquarePoint normal;  // of the half vector
+    SquarePoint color;   // in the tables of colours
+    double scale;        // D / (4 sigma)
+  };
+
+  explicit Tables(const TensorFile& file);
+
+  bool is_spectral() const { return !wavelengths.empty(); }
+  TableBlend BlendAt(const Vec3& wi) const;
+  SquarePoint NormalAt(const Vec3& wi, const Vec3& half) const;
+  Place Locate(const DirectionPair& pair) const;
+  Rgb Value(const DirectionPair& pair) const;
+  void ReadColors(const TensorFile& file);
+  double Pdf(const Vec3& wi, const Vec3& wo) const;
+
+  std::vector<float> theta_i, phi_i;  // radians, ascending
+  bool isotropic;
+  double least_cosine;  // of what is known
+  Table ndf, sigma;
+  Table color_size;
+  WarpTables vndf, luminance;
+  std::vector<float> wavelengths;
+  // [phi_i][theta_i][channel][row][column]: RGB, and of a spectral file all that was measured.
+  std::vector<float> colors, spectra;
+  std::string text;
+};
+
+RglBrdf::Tables::Tables(const TensorFile& file)
+    : theta_i(ReadNodes(file, "theta_i", 0.0f, kLastElevation)),
+      phi_i(ReadNodes(file, "phi_i", -kLastAzimuth, kLastAzimuth)),
+      isotropic(phi_i.size() <= kMostIsotropic),
+      least_cosine(std::cos(std::min<double>(theta_i.back(), kLastKnown))),
+      ndf(ReadTable(file, "ndf")),
+      sigma(ReadTable(file, "sigma")),
+      vndf(ReadWarp(file, "vndf", phi_i.size(), theta_i.size(), &color_size)),
+      luminance(ReadWarp(file, "luminance", phi_i.size(), theta_i.size(), &color_size)),
+      text(file.Text("description")) {
+  const double span = double(phi_i.back()) - phi_i.front();
+  if (!isotropic && std::round(2.0 * kPi / span) != 1.0) {
+    Fail(file.path(), ": its phi_i span ", span, " radians; files cut down to less than the whole ",
+         "circle by a symmetry aren't read");
+  }
+  if (!file.Has("jacobian")) Fail(file.path(), ": no field 'jacobian' in it");
+  ReadColors(file);
+}
+
+void RglBrdf::Tables::ReadColors(const TensorFile& file) {
+  const std::size_t size = color_size.rows * color_size.columns;
+  if (!file.Has("spectra")) {
+    colors = file.Floats(
+        "rgb", Shape{phi_i.size(), theta_i.size(), 3, color_size.rows, color_size.columns});
+    return;
+  }
+  wavelengths = ReadNodes(file, "wavelengths", 1.0f, kLongestWave);
+  const std::size_t n = wavelengths.size();
+  spectra = file.Floats(
+      "spectra", Shape{phi_i.size(), theta_i.size(), n, color_size.rows, color_size.columns});
+  std::vector<Rgb> weights;
+  try {
+    weights = SpectrumToRgb(wavelengths);
+  } catch (const Error& error) {
+    Fail(file.path(), ": ", error.what());
+  }
+  // Linear, as the interpolation of the tables is: what is blended later may be weighed now.
+  std::vector<double> sums(3 * size);
+  for (std::size_t slice = 0; slice < phi_i.size() * theta_i.size(); ++slice) {
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const float* spectrum = &spectra[(slice * n + k) * size];
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < size; ++i) sums[c * size + i] += weights[k][c] * spectrum[i];
+      }
+    }
+    for (double sum : sums) colors.push_back(static_cast<float>(sum));
+  }
+}
+
+TableBlend RglBrdf::Tables::BlendAt(const Vec3& wi) const {
+  const double azimuth = Azimuth(wi);
+  const bool turn = !isotropic && azimuth < phi_i.front();  // nodes from 0 to 2 pi
+  const auto phi = PlaceAmong(phi_i, turn ? azimuth + 2.0 * kPi : azimuth);
+  const auto theta = PlaceAmong(theta_i, Elevation(wi));
+  TableBlend blend;
+  for (std::size_t p = 0; p < 2; ++p) {
+    for (std::size_t t = 0; t < 2; ++t) {
+      const double weight = (p == 1 ? phi.fraction : 1.0 - phi.fraction) *
+                            (t == 1 ? theta.fraction : 1.0 - theta.fraction);
+      blend.Add((phi.below + p) * theta_i.size() + theta.below + t, weight);
+    }
+  }
+  return blend;
+}
+
+SquarePoint RglBrdf::Tables::NormalAt(const Vec3& wi, const Vec3& half) const {
+  return {ElevationColumn(Elevation(half)),
+          AzimuthRow(isotropic ? Azimuth(half) - Azimuth(wi) : Azimuth(half))};
+}
+
+RglBrdf::Tables::Place RglBrdf::Tables::Locate(const DirectionPair& pair) const {
+  const Vec3 sum = pair.wi + pair.wo;
+  Place place;
+  place.blend = BlendAt(pair.wi);
+  place.normal = NormalAt(pair.wi, (1.0 / Length(sum)) * sum);
+  place.color = vndf.ToUniform(place.blend, place.normal);
+  const double area = sigma.At(ElevationColumn(Elevation(pair.wi)), AzimuthRow(Azimuth(pair.wi)));
+  const double density = ndf.At(place.normal.x, place.normal.y);
+  place.scale = area > 0.0 ? density / (4.0 * area) : 0.0;
+  return place;
+}
+
+Rgb RglBrdf::Tables::Value(const DirectionPair& pair) const {
+  const Place place = Locate(pair);
+  const std::size_t size = color_size.rows * color_size.columns;
+  const double scale = place.scale / pair.wo.z;
+  Rgb value;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double blended = 0.0;
+    for (int k = 0; k < place.blend.count; ++k) {
+      blended += place.blend.weights[k] * Bilinear(&colors[(3 * place.blend.tables[k] + c) * size],
+                                                   color_size.rows, color_size.columns,
+                                                   place.color.x, place.color.y);
+    }
+    value[c] = blended > 0.0 ? std::min(blended * scale, kLargestValue) : 0.0;
+  }
+  return value;
+}
+
+double RglBrdf::Tables::Pdf(const Vec3& wi, const Vec3& wo) const {
+  const Vec3 sum = wi + wo;
+  const double length = Length(sum), sin_theta = std::hypot(sum.x, sum.y) / length;
+  const Place place = Locate({wi, wo});
+  const double jacobian =
+      4.0 * (0.5 * length) * std::max(2.0 * kPi * kPi * place.normal.x * sin_theta, kLeastJacobian);
+  return vndf.Density(place.blend, place.normal) * luminance.Density(place.blend, place.color) /
+         jacobian;
+}
+
+RglBrdf::RglBrdf(std::unique_ptr<const Tables> tables) : tables_(std::move(tables)) {}
+RglBrdf::~RglBrdf() = default;
+RglBrdf::RglBrdf(RglBrdf&&) noexcept = default;
+
+RglBrdf RglBrdf::Read(const std::string& path) {
+  return RglBrdf(std::make_unique<const Tables>(TensorFile::Read(path)));
+}
+
+void RglBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs, std::span<Rgb> values) const {
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    values[n] = pairs[n].AboveHorizon() ? tables_->Value(pairs[n]) : Rgb{};
+  }
+}
+
+bool RglBrdf::IsKnown(const DirectionPair& pair) const {
+  return pair.AboveHorizon() && std::min(pair.wi.z, pair.wo.z) >= tables_->least_cosine;
+}
+
+bool RglBrdf::IsIsotropic() const { return tables_->isotropic; }
+
+const std::vector<float>& RglBrdf::wavelengths() const { return tables_->wavelengths; }
+
+std::string RglBrdf::Description() const {
+  const Tables& t = *tables_;
+  const std::string colors =
+      t.is_spectral() ? StrCat(t.wavelengths.size(), " wavelengths from ", t.wavelengths.front(),
+                               " to ", t.wavelengths.back(), " nm")
+                      : "RGB";
+  std::string text = t.text.substr(0, kShownText);
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+  if (text.size() < t.text.size()) text += "...";
+  return StrCat("RGL measurement, ", t.isotropic ? "isotropic" : "anisotropic", ", ", colors, ", ",
+                t.phi_i.size(), " x ", t.theta_i.size(), " incident directions",
+                text.empty() ? "" : ": ", text);
+}
+
+std::vector<double> RglBrdf::Spectrum(const DirectionPair& pair) const {
+  const Tables& t = *tables_;
+  const std::size_t n = t.wavelengths.size(), size = t.color_size.rows * t.color_size.columns;
+  std::vector<double> spectrum(n, 0.0);
+  if (!pair.AboveHorizon()) return spectrum;
+  const Tables::Place place = t.Locate(pair);
+  for (std::size_t w = 0; w < n; ++w) {
+    for (int k = 0; k < place.blend.count; ++k) {
+      spectrum[w] += place.blend.weights[k] *
+                     Bilinear(&t.spectra[(n * place.blend.tables[k] + w) * size], t.color_size.rows,
+                              t.color_size.columns, place.color.x, place.color.y);
+    }
+    spectrum[w] *= place.scale / pair.wo.z;
+  }
+  return spectrum;
+}
+
+double RglBrdf::Pdf(const Vec3& wi, const Vec3& wo) const {
+  return wi.z > 0.0 && wo.z > 0.0 ? tables_->Pdf(wi, wo) : 0.0;
+}
+
+Vec3 RglBrdf::Sample(const Vec3& wi, double u0, double u1) const {
+  const Tables& t = *tables_;
+  const TableBlend blend = t.BlendAt(wi);
+  const SquarePoint color = t.luminance.FromUniform(blend, {u0, u1});
+  const SquarePoint normal = t.vndf.FromUniform(blend, color);
+  const double turn = t.isotropic ? Azimuth(wi) : 0.0;
+  const Vec3 half =
+      FromSpherical(0.5 * kPi * normal.x * normal.x, (2.0 * normal.y - 1.0) * kPi + turn);
+  return 2.0 * Dot(wi, half) * half - wi;
+}
+
+}  // namespace pbnbrdf
