@@ -17,10 +17,9 @@ void CheckRange(const std::string& name, double value, const Range& range) {
 template <typename Value>
 Field IntegerField(std::string name, Value* value, Range range, std::string help) {
   return Custom(
-      name,
-      [=](std::string_view text) { *value = ParseInteger<Value>(name, text); },
-      [=] { return StrCat(*value); },
-      [=] { CheckRange(name, static_cast<double>(*value), range); }, std::move(help));
+      name, [=](std::string_view text) { *value = ParseInteger<Value>(name, text); },
+      [=] { return StrCat(*value); }, [=] { CheckRange(name, static_cast<double>(*value), range); },
+      std::move(help));
 }
 
 }  // namespace

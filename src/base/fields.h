@@ -66,7 +66,8 @@ Field Custom(std::string name, std::function<void(std::string_view)> parse,
 
 // One of the names of a table. The help ends with them.
 template <typename Enum, std::size_t N>
-Field Choice(std::string name, Enum* value, const NameTable<Enum, N>& table, const std::string& help) {
+Field Choice(std::string name, Enum* value, const NameTable<Enum, N>& table,
+             const std::string& help) {
   return Custom(
       name, [name, value, &table](std::string_view text) { *value = ParseName(table, name, text); },
       [value, &table] { return std::string(NameOf(table, *value)); }, [] {},

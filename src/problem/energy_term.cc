@@ -21,29 +21,30 @@ bool AnyAbove(const Rgb& values, double bound) {
 
 }  // namespace
 
-EnergyWork& EnergyWork::operator+=(const EnergyWork& other) {
-  albedos += other.albedos;
-  albedos_skipped += other.albedos_skipped;
-  jacobians += other.jacobians;
-  jacobians_skipped += other.jacobians_skipped;
-  return *this;
+template <typename T>
+typename EnergyTerm<T>::Stratum EnergyTerm<T>::Encoded(const Vec3& wi, std::size_t k) const {
+  Stratum stratum;
+  stratum.wi = wi;
+  for (const AlbedoNode& node : QuadratureOfStratum(problem_, k).Nodes(wi)) {
+    stratum.inputs.Add(Encode(shape_.encoding(), node.pair));
+    stratum.node_weights.push_back(node.weight);
+  }
+  return stratum;
 }
 
 template <typename T>
-EnergyTerm<T>::EnergyTerm(const FitProblem& problem, std::span<const EnergyStratum> strata)
-    : shape_(problem.Shape()),
-      absolute_(problem.loss == Loss::kAbsolute),
-      skip_(problem.energy_skip) {
-  if (problem.energy_weight == 0.0) return;
-  const double weight = problem.energy_weight / (absolute_ ? kChannels : 1);
-  for (const EnergyStratum& from : strata) {
-    Stratum& to = strata_.emplace_back();
-    to.weight = weight * from.solid_angle;
-    to.limit = from.limit;
-    for (const AlbedoNode& node : QuadratureOfStratum(problem, strata_.size() - 1).Nodes(from.wi)) {
-      to.inputs.Add(Encode(shape_.encoding(), node.pair));
-      to.node_weights.push_back(node.weight);
-    }
+void EnergyTerm<T>::Set(double weight, std::span<const EnergyStratum> strata) {
+  weight_ = weight;
+  linearizations_ = 0;
+  if (weight == 0.0) return;
+  strata_.resize(std::min(strata_.size(), strata.size()));
+  for (std::size_t k = 0; k < strata.size(); ++k) {
+    if (k == strata_.size()) strata_.push_back(Encoded(strata[k].wi, k));
+    if (strata_[k].wi != strata[k].wi) strata_[k] = Encoded(strata[k].wi, k);
+    strata_[k].weight = weight / (IsAbsolute() ? kChannels : 1) * strata[k].solid_angle;
+    strata_[k].limit = strata[k].limit;
+    strata_[k].excess = {};
+    strata_[k].watched = true;
   }
 }
 
@@ -59,12 +60,13 @@ void EnergyTerm<T>::UpdateExcesses(const T* weights, bool of_all) {
   for (Stratum& stratum : strata_) {
     const bool computed = of_all || stratum.watched;
     ++(computed ? work_.albedos : work_.albedos_skipped);
-    if (of_all) stratum.watched = !skip_ || AnyAbove(stratum.excess, -kFar);
+    if (of_all) stratum.watched = !problem_.terms.energy_skip || AnyAbove(stratum.excess, -kFar);
   }
 }
 
 template <typename T>
 double EnergyTerm<T>::Cost(const T* weights) {
+  if (weight_ == 0.0) return 0.0;
   UpdateExcesses(weights, /*of_all=*/false);
   double cost = 0.0;
   for (const Stratum& stratum : strata_) cost += CostOf(stratum);
@@ -73,6 +75,7 @@ double EnergyTerm<T>::Cost(const T* weights) {
 
 template <typename T>
 void EnergyTerm<T>::Linearize(const T* weights, Linearization* at) {
+  if (weight_ == 0.0) return;
   UpdateExcesses(weights, /*of_all=*/linearizations_++ % kRecheck == 0);
   std::vector<const Stratum*> active;
   for (const Stratum& stratum : strata_) {
@@ -94,8 +97,8 @@ void EnergyTerm<T>::Linearize(const T* weights, Linearization* at) {
     const double excess = std::max(0.0, stratum.excess[row % kChannels]);
     if (row % kChannels == 0) at->cost += CostOf(stratum);
     const double scale =
-        excess > 0.0 ? (absolute_ ? stratum.weight : std::sqrt(stratum.weight)) : 0.0;
-    residuals[row] = absolute_ ? 1.0 : scale * excess;
+        excess > 0.0 ? (IsAbsolute() ? stratum.weight : std::sqrt(stratum.weight)) : 0.0;
+    residuals[row] = IsAbsolute() ? 1.0 : scale * excess;
     jacobian.row(row) *= scale;
   }
   Eigen::Map<Eigen::VectorXd>(at->gradient.data(), p) += jacobian.transpose() * residuals;
@@ -108,7 +111,7 @@ double EnergyTerm<T>::CostOf(const Stratum& stratum) const {
   double cost = 0.0;
   for (double excess : stratum.excess) {
     if (excess <= 0.0) continue;  // NaN counts
-    cost += stratum.weight * (absolute_ ? excess : 0.5 * excess * excess);
+    cost += stratum.weight * (IsAbsolute() ? excess : 0.5 * excess * excess);
   }
   return cost;
 }
@@ -122,7 +125,8 @@ Rgb EnergyTerm<T>::Albedo(const T* weights, const Stratum& stratum) const {
     for (int c = 0; c < kChannels; ++c) {
       for (int n = 0; n < stratum.inputs.batch_size(b); ++n) {
         const double z = static_cast<double>(mlp.output()[c * kBatch + n]);
-        if (!(z <= 0.0)) albedo[c] += stratum.node_weights[b * kBatch + n] * Reflectance(z);
+        if (z <= 0.0) continue;  // NaN counts
+        albedo[c] += stratum.node_weights[b * kBatch + n] * Reflectance(z);
       }
     }
   }

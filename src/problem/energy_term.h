@@ -1,7 +1,6 @@
 // energy_term.h: the energy term (eq. 5) over strata of incident directions, for the fast path.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,22 +9,15 @@
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "pbnbrdf/problem/linearization.h"
+#include "pbnbrdf/problem/objective.h"
 
 namespace pbnbrdf {
-
-// How often a directional albedo and its derivatives were computed, and how often they needn't be.
-struct EnergyWork {
-  std::int64_t albedos = 0, albedos_skipped = 0;
-  std::int64_t jacobians = 0, jacobians_skipped = 0;
-
-  EnergyWork& operator+=(const EnergyWork& other);
-};
 
 // 1/2 weight sum over strata k and channels of r^2, r as in residuals/energy_residual.h; with
 // Loss::kAbsolute weight times eq. 5, the mean over channels. The nodes of the quadrature don't move
 // while fitting: they are encoded once.
 //
-// Only strata above their limit have derivatives. With problem.energy_skip, those that were far
+// Only strata above their limit have derivatives. With TermOptions::energy_skip, those that were far
 // below it (kFar) are taken to be so still, and looked at again at every kRecheck-th Linearize: that
 // changes the result only if an albedo grows by kFar in between and falls again.
 template <typename T>
@@ -34,8 +26,11 @@ class EnergyTerm {
   static constexpr double kFar = 0.1;
   static constexpr int kRecheck = 8;
 
-  // Empty if problem.energy_weight is 0: all costs are then 0.
-  EnergyTerm(const FitProblem& problem, std::span<const EnergyStratum> strata);
+  // Empty until it is set: all costs are then 0.
+  explicit EnergyTerm(const FitProblem& problem) : problem_(problem), shape_(problem.Shape()) {}
+
+  // weight: 0 for no term. A stratum in the place and direction of one that there was keeps its nodes.
+  void Set(double weight, std::span<const EnergyStratum> strata);
 
   double Cost(const T* weights);
 
@@ -46,6 +41,7 @@ class EnergyTerm {
 
  private:
   struct Stratum {
+    Vec3 wi;
     EncodedBatches<T> inputs;
     std::vector<double> node_weights;
     double weight;  // of the term, with the solid angle
@@ -59,8 +55,12 @@ class EnergyTerm {
   void AlbedoGradients(const T* weights, const Stratum& stratum, double* gradients) const;
   double CostOf(const Stratum& stratum) const;
 
+  Stratum Encoded(const Vec3& wi, std::size_t k) const;
+  bool IsAbsolute() const { return problem_.terms.loss == Loss::kAbsolute; }
+
+  FitProblem problem_;
   NetworkShape shape_;
-  bool absolute_, skip_;
+  double weight_ = 0.0;
   std::vector<Stratum> strata_;
   int linearizations_ = 0;
   EnergyWork work_;

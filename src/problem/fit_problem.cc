@@ -1,104 +1,74 @@
 #include "pbnbrdf/problem/fit_problem.h"
 
-#include <ceres/loss_function.h>
-
+#include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "pbnbrdf/base/error.h"
+#include "problem/problem_fields.h"
+#include "problem/robust_loss.h"
+#include "problem/terms.h"
 
 namespace pbnbrdf {
-namespace {
 
-constexpr std::size_t kMostSamples = 100'000'000;
-constexpr double kNbrdfBound = 0.05;
+NetworkShape NetworkOptions::Shape() const {
+  return NetworkShape(encoding.value_or(Encoding::kMerl), hidden, activation,
+                      channels == 0 ? NetworkShape::kChannels : channels);
+}
 
-void CheckWeight(const char* field, double weight) {
-  if (!(weight >= 0.0) || !std::isfinite(weight)) {
-    Fail(field, " = ", weight, "; must be finite and >= 0");
+double TermOptions::Weight(std::string_view name) const {
+  for (const WeightedTerm& term : weights) {
+    if (term.name == name) return term.weight;
+  }
+  return 0.0;
+}
+
+void TermOptions::SetWeight(std::string_view name, double weight) {
+  const auto found = std::find_if(weights.begin(), weights.end(),
+                                  [&](const WeightedTerm& term) { return term.name == name; });
+  if (weight == 0.0) {
+    if (found != weights.end()) weights.erase(found);
+  } else if (found != weights.end()) {
+    found->weight = weight;
+  } else {
+    weights.push_back({std::string(name), weight});
   }
 }
 
-template <typename Integer>
-void CheckCount(const char* field, Integer value, Integer least, Integer most) {
-  if (value < least || value > most) {
-    Fail(field, " = ", value, "; must be ", least, " to ", most);
-  }
+SampleAngles SamplingOptions::Angles() const {
+  SampleAngles all = angles;
+  if (!asked) return all;
+  all.asked = asked;
+  all.floor = asked_floor;
+  return all;
 }
 
-}  // namespace
-
-SampleAngles FitProblem::Angles() const {
-  SampleAngles angles = sampling;
-  if (!asked) return angles;
-  angles.asked = asked;
-  angles.floor = asked_floor;
-  return angles;
+FitProblem FitProblem::For(const Brdf& material) const {
+  FitProblem settled = *this;
+  if (!settled.network.encoding) settled.network.encoding = EncodingFor(material);
+  if (settled.network.channels == 0) settled.network.channels = material.NumChannels();
+  return settled;
 }
 
 void FitProblem::Validate() const {
+  FitProblem copy = *this;
+  NetworkFields(&copy.network).Check();
+  TermFields(&copy.terms).Check();
+  SamplingFields(&copy.sampling).Check();
   Shape();
-  CheckWeight("log_weight", log_weight);
-  CheckWeight("chromaticity_weight", chromaticity_weight);
-  CheckWeight("energy_weight", energy_weight);
-  if (log_weight + chromaticity_weight == 0.0) {
-    Fail("terms: log or chromaticity must be among them, with a weight > 0");
-  }
-  if (channels == 1 && chromaticity_weight > 0.0) {
-    Fail("terms: chromaticity is of no use to a single channel");
-  }
-  if (!(loss_scale > 0.0) || !std::isfinite(loss_scale)) {
-    Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
-  }
-  CheckCount("samples", samples, std::size_t{1}, kMostSamples);
-  CheckCount("first_samples", first_samples, std::size_t{1}, kMostSamples);
-  if (!(growth > 1.0) || !std::isfinite(growth))
-    Fail("growth = ", growth, "; must be finite and > 1");
-  if (!(asked_floor >= 0.0 && asked_floor <= 1.0)) {
-    Fail("asked_floor = ", asked_floor, "; must be 0 to 1");
-  }
-  CheckCount("energy_strata", energy_strata, 1, 1024);
-  CheckCount("energy_azimuths", energy_azimuths, 1, 1024);
-  CheckCount("energy_theta", energy_theta, 2, 1024);
-  CheckCount("energy_phi", energy_phi, 2, 1024);
-}
-
-std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale) {
-  switch (loss) {
-    case Loss::kL2:
-    case Loss::kAbsolute:
-      return nullptr;
-    case Loss::kSoftL1:
-      return std::make_unique<ceres::SoftLOneLoss>(scale);
-    case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(scale);
-    case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(scale);
-  }
-  return nullptr;
-}
-
-std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
-                                   std::uint64_t seed, Initialization initialization) {
-  const bool glorot = initialization == Initialization::kGlorot;
-  std::mt19937_64 random(seed);
-  std::vector<double> weights(shape.num_weights(), 0.0);
-  for (int layer = 0; layer < shape.num_layers(); ++layer) {
-    const int in = shape.in(layer), out = shape.out(layer);
-    const double bound = glorot ? std::sqrt(6.0 / (in + out)) : kNbrdfBound;
-    double* row = weights.data() + shape.offset(layer);
-    for (int o = 0; o < out; ++o, row += in + 1) {
-      for (int i = 0; i < in; ++i) {
-        const double u = static_cast<double>(random() >> 11) * 0x1p-53;
-        row[i] = bound * (2.0 * u - 1.0);
-      }
-      if (!glorot || layer + 1 < shape.num_layers()) continue;
-      for (const BrdfSample& sample : samples) {
-        row[in] += std::log1p(sample.value[o]) / static_cast<double>(samples.size());
-      }
+  bool has_sample_term = false;
+  for (const WeightedTerm& term : terms.weights) {
+    const TermType& type = *FindTermType(term.name);
+    has_sample_term |= type.make != nullptr;
+    if (type.needs_color && network.channels == 1) {
+      Fail("terms: ", term.name, " is of no use to a single channel");
     }
   }
-  return weights;
+  if (!has_sample_term) Fail("terms: log or chromaticity must be among them, with a weight > 0");
+}
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(const TermOptions& terms) {
+  if (terms.loss != Loss::kSoftL1) return nullptr;
+  return std::make_unique<ceres::SoftLOneLoss>(terms.loss_scale);
 }
 
 }  // namespace pbnbrdf

@@ -16,9 +16,8 @@ constexpr int kBatch = kernels::kBatch;
 
 MinibatchGradient::MinibatchGradient(const FitProblem& problem)
     : shape_(problem.Shape()),
-      log_weight_(static_cast<float>(problem.log_weight)),
-      chromaticity_weight_(static_cast<float>(problem.chromaticity_weight)),
-      energy_weight_(static_cast<float>(problem.energy_weight * 2.0 * std::numbers::pi)),
+      terms_(MakeSampleTerms(problem.terms)),
+      energy_weight_(static_cast<float>(problem.terms.EnergyWeight() * 2.0 * std::numbers::pi)),
       mlp_(shape_, 1) {}
 
 void MinibatchGradient::Evaluate(const float* weights, const Minibatches& minibatches,
@@ -39,10 +38,14 @@ void MinibatchGradient::Evaluate(const float* weights, const Minibatches& miniba
 void MinibatchGradient::AddBlock(const float* weights, const float* block, float scale,
                                  float* gradient) {
   mlp_.Forward(weights, block);
+  float* to = mlp_.output_gradient(0);
+  std::fill(to, to + kChannels * kBatch, 0.0f);
   // A place without a sample has cos_i = 0, thus no gradient.
-  kernels::AbsoluteLossGradient(
-      mlp_.output(), block + Minibatches::kCos * kBatch, block + Minibatches::kValue * kBatch,
-      scale * log_weight_ / kChannels, scale * chromaticity_weight_, mlp_.output_gradient(0));
+  for (const WeightedSampleTerm& term : terms_) {
+    term.term->AddAbsoluteGradient(mlp_.output(), block + Minibatches::kCos * kBatch,
+                                   block + Minibatches::kValue * kBatch,
+                                   scale * static_cast<float>(term.weight), to);
+  }
   mlp_.Backward(weights);
   mlp_.AddWeightGradient(0, gradient);
 }

@@ -7,6 +7,7 @@
 #include "network/batched_mlp.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "problem/minibatches.h"
+#include "problem/terms.h"
 
 namespace pbnbrdf {
 
@@ -29,7 +30,8 @@ class MinibatchGradient {
   void AddNodes(const float* weights, const float* block, const float* scales, float* gradient);
 
   NetworkShape shape_;
-  float log_weight_, chromaticity_weight_, energy_weight_;
+  std::vector<WeightedSampleTerm> terms_;
+  float energy_weight_;
   BatchedMlp<float> mlp_;
 };
 

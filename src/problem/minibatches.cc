@@ -11,23 +11,25 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kBatch = kernels::kBatch;
-constexpr std::size_t kMostSamples = 1 << 15;  // drawn at once: they stay in the cache
-constexpr int kEnergySets = 4;                 // drawn with them
+constexpr std::size_t kMaxSamples = 1 << 15;  // drawn at once: they stay in the cache
+constexpr int kEnergySets = 4;                // drawn with them
 
 }  // namespace
 
-MinibatchStream::MinibatchStream(const FitProblem& problem, std::span<const BrdfSample> samples,
+MinibatchStream::MinibatchStream(const FitProblem& problem, const EncodedSamples& samples,
                                  std::size_t batch, int energy_angles)
     : problem_(problem),
+      encoding_(samples.encoding()),
       batch_(batch),
       energy_angles_(energy_angles),
-      random_(problem.seed),
+      random_(problem.sampling.seed),
       order_(samples.size()) {
   rows_.reserve(samples.size() * Minibatches::kRows);
-  for (const BrdfSample& s : samples) {
-    for (double x : Encode(problem.encoding, s.pair)) rows_.push_back(static_cast<float>(x));
-    rows_.push_back(static_cast<float>(CosI(s.pair)));
-    for (double f : s.value) rows_.push_back(static_cast<float>(f));
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const double* input = samples.inputs().batch(n / kBatch) + n % kBatch;
+    for (int i = 0; i < kEncodedSize; ++i) rows_.push_back(static_cast<float>(input[i * kBatch]));
+    rows_.push_back(static_cast<float>(samples.cos_i(n)));
+    for (double f : samples.samples()[n].value) rows_.push_back(static_cast<float>(f));
   }
   std::iota(order_.begin(), order_.end(), 0u);
 }
@@ -35,7 +37,7 @@ MinibatchStream::MinibatchStream(const FitProblem& problem, std::span<const Brdf
 void MinibatchStream::Draw(Minibatches* to) {
   const std::size_t per_epoch = order_.size() / batch_;
   to->batch = batch_;
-  to->count = std::clamp<std::size_t>(kMostSamples / batch_, 1, per_epoch - next_);
+  to->count = std::clamp<std::size_t>(kMaxSamples / batch_, 1, per_epoch - next_);
   to->samples.resize(to->count * to->BlocksPerStep() * Minibatches::kRows * kBatch);
   float* block = to->samples.data();
   for (std::size_t b = 0; b < to->count; ++b, ++next_) {
@@ -49,7 +51,7 @@ void MinibatchStream::Draw(Minibatches* to) {
   if (to->ends_epoch) next_ = 0;
   to->nodes.clear();
   to->albedos.clear();
-  if (problem_.energy_weight == 0.0) return;
+  if (problem_.terms.EnergyWeight() == 0.0) return;
   to->albedos_per_step = energy_angles_;
   for (int set = 0; set < kEnergySets; ++set) {
     for (int k = 0; k < energy_angles_; ++k) {
@@ -89,8 +91,8 @@ void MinibatchStream::CopyBlock(std::span<const std::uint32_t> indices, float* b
 // As brdf/albedo.h, but on a grid that is shifted as a whole by random parts of its cells, lest the
 // network learn where the nodes are: half vectors at theta_h = (pi/2) t^2.
 void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
-  const int n_theta = problem_.energy_theta, n_phi = problem_.energy_phi;
-  const double phi_i = IsIsotropic(problem_.encoding) ? 0.0 : 2.0 * kPi * Uniform();
+  const int n_theta = problem_.terms.energy_theta, n_phi = problem_.terms.energy_phi;
+  const double phi_i = IsIsotropic(encoding_) ? 0.0 : 2.0 * kPi * Uniform();
   const Vec3 wi = FromSpherical(std::acos(cos_i), phi_i);
   const double shift_t = Uniform(), shift_phi = Uniform();
   const std::size_t first_block = to->nodes.size() / (Minibatches::kNodeRows * kBatch);
@@ -104,14 +106,14 @@ void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
       const double cos_d = Dot(wi, h);
       const Vec3 wo = 2.0 * cos_d * h - wi;
       if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
-      const std::size_t lane = nodes++ % kBatch;
-      if (lane == 0) to->nodes.resize(to->nodes.size() + Minibatches::kNodeRows * kBatch, 0.0f);
+      const std::size_t place = nodes++ % kBatch;
+      if (place == 0) to->nodes.resize(to->nodes.size() + Minibatches::kNodeRows * kBatch, 0.0f);
       float* block = to->nodes.data() + to->nodes.size() - Minibatches::kNodeRows * kBatch;
-      const auto input = Encode(problem_.encoding, {wi, wo});
+      const auto input = Encode(encoding_, {wi, wo});
       for (int k = 0; k < kEncodedSize; ++k)
-        block[k * kBatch + lane] = static_cast<float>(input[k]);
+        block[k * kBatch + place] = static_cast<float>(input[k]);
       const double solid_angle_h = sin_h * kPi * t / n_theta * (2.0 * kPi / n_phi);
-      block[Minibatches::kWeight * kBatch + lane] =
+      block[Minibatches::kWeight * kBatch + place] =
           static_cast<float>(wo.z * 4.0 * cos_d * solid_angle_h);
     }
   }

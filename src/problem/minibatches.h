@@ -11,7 +11,7 @@
 #include "kernels/kernels.h"
 #include "pbnbrdf/network/encoding.h"
 #include "pbnbrdf/problem/fit_problem.h"
-#include "pbnbrdf/problem/sampling.h"
+#include "problem/encoded_samples.h"
 
 namespace pbnbrdf {
 
@@ -55,12 +55,12 @@ struct Minibatches {
   }
 };
 
-// Goes through all samples in random order (problem.seed), epoch after epoch.
+// Goes through all samples in random order (SamplingOptions::seed), epoch after epoch.
 class MinibatchStream {
  public:
   // batch: samples of a minibatch, 1 to as many as there are; those that are left over at the end
   // of an epoch are left out. energy_angles: incident angles of a minibatch, >= 1.
-  MinibatchStream(const FitProblem& problem, std::span<const BrdfSample> samples, std::size_t batch,
+  MinibatchStream(const FitProblem& problem, const EncodedSamples& samples, std::size_t batch,
                   int energy_angles);
 
   // The next few minibatches, of one epoch all of them.
@@ -73,6 +73,7 @@ class MinibatchStream {
   void DrawAlbedo(double cos_i, Minibatches* to);
 
   FitProblem problem_;
+  Encoding encoding_;
   std::size_t batch_;
   int energy_angles_;
   std::mt19937_64 random_;

@@ -19,13 +19,12 @@ namespace {
 
 constexpr double kBeta1 = 0.9, kBeta2 = 0.999;
 constexpr double kEpsilon = 1e-15;  // NBRDF's
-constexpr std::size_t kCostSamples = 16384;
 constexpr std::size_t kWindow = 5;  // epochs whose mean cost is compared
 
 // Steps on one thread, while another one draws the minibatches that come next.
 class Adam {
  public:
-  Adam(const FitProblem& problem, std::span<const BrdfSample> samples, const AdamOptions& options,
+  Adam(const FitProblem& problem, const EncodedSamples& samples, const AdamOptions& options,
        const std::vector<double>& start)
       : learning_rate_(options.learning_rate),
         stream_(problem, samples, std::min(options.batch, samples.size()), options.energy_angles),
@@ -93,28 +92,12 @@ bool HasConverged(const std::vector<double>& costs, double tolerance) {
   return std::abs(last - before) < tolerance * before;
 }
 
-std::unique_ptr<Objective> MakeCost(FitProblem problem, std::span<const BrdfSample> samples) {
-  problem.loss = Loss::kAbsolute;
-  return MakeObjective(problem, samples.first(std::min(kCostSamples, samples.size())));
-}
-
 }  // namespace
 
-void AdamOptions::Validate() const {
-  if (batch < 1) Fail("batch = ", batch, "; must be >= 1");
-  if (!(learning_rate > 0.0) || !std::isfinite(learning_rate)) {
-    Fail("learning_rate = ", learning_rate, "; must be finite and > 0");
-  }
-  if (energy_angles < 1 || energy_angles > 1024) {
-    Fail("energy_angles = ", energy_angles, "; must be 1 to 1024");
-  }
-}
-
-StageResult MinimizeAdam(const FitProblem& problem, std::span<const BrdfSample> samples,
-                         const AdamOptions& adam, const StageOptions& options,
+StageResult MinimizeAdam(const FitProblem& problem, const EncodedSamples& samples,
+                         const AdamOptions& adam, Objective* objective, const StageOptions& options,
                          std::vector<double>* weights) {
   Adam state(problem, samples, adam, *weights);
-  const auto objective = MakeCost(problem, samples);
   std::vector<double> last = *weights, costs;  // after each epoch, and at the start
   int best = 0;                                // epoch
   StageResult result;

@@ -15,7 +15,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr int kMostInvalidSteps = 20;
+constexpr int kMaxInvalidSteps = 20;
 constexpr int kLbfgsRank = 30;
 
 class IterationCallback final : public ceres::IterationCallback {
@@ -102,7 +102,7 @@ StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options
   ceres_options.initial_trust_region_radius = kFirstTrustRegionRadius;
   ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   ceres_options.use_nonmonotonic_steps = true;  // halves the iterations; the best weights are kept
-  ceres_options.max_num_consecutive_invalid_steps = kMostInvalidSteps;
+  ceres_options.max_num_consecutive_invalid_steps = kMaxInvalidSteps;
   ceres_options.num_threads = 1;  // one block, whose threads are its own
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, problem, &summary);

@@ -6,29 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "pbnbrdf/base/names.h"
-#include "pbnbrdf/problem/objective.h"
+#include "pbnbrdf/solve/fit.h"
 
 namespace pbnbrdf {
 
-enum class Termination {
-  kConverged,
-  kMaxIterations,
-  kMaxSeconds,
-  kInterrupted,
-  // The cost or its derivatives aren't finite any more, or no step can be computed. The weights are
-  // the best ones before; StageResult::cost is infinite if it wasn't finite even at the start.
-  kDiverged,
-};
-
-inline constexpr NameTable<Termination, 5> kTerminations = {
-    {{"converged", Termination::kConverged},
-     {"max_iterations", Termination::kMaxIterations},
-     {"max_seconds", Termination::kMaxSeconds},
-     {"interrupted", Termination::kInterrupted},
-     {"diverged", Termination::kDiverged}}};
-
-// Of both Levenberg-Marquardt solvers. From random weights larger ones are refused several times over.
+// Of all Levenberg-Marquardt solvers. From random weights larger ones are refused several times over.
 inline constexpr double kFirstTrustRegionRadius = 10.0;
 
 struct StageOptions {
@@ -41,7 +23,7 @@ struct StageOptions {
 };
 
 struct StageResult {
-  double cost = 0.0;
+  double cost = 0.0;  // infinite if it wasn't finite even at the start
   int iterations = 0;
   // Of the iterations of Levenberg-Marquardt: those for which no step could be computed, as the
   // damped J'J didn't factor or something wasn't finite, and those whose step was too poor to take.

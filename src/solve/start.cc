@@ -5,13 +5,12 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/problem/objective.h"
+#include "problem/initial_weights.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::size_t kSamples = 1024;  // that tell whether weights are a start
-constexpr int kMostRestarts = 5;
+constexpr int kMaxRestarts = 5;
 constexpr std::uint64_t kIndexSeed = 0xbf58476d1ce4e5b9, kRestartSeed = 0x94d049bb133111eb;
 constexpr double kRoundingSpread = 1e-6;
 
@@ -34,13 +33,13 @@ bool Varies(const std::vector<Rgb>& values) {
   });
 }
 
-StartQuality Judge(const FitProblem& problem, std::span<const BrdfSample> all_samples,
+StartQuality Judge(Objective* objective, const EncodedSamples& all_samples,
                    const std::vector<double>& weights) {
-  const auto samples = all_samples.first(std::min(kSamples, all_samples.size()));
-  const NetworkShape shape = problem.Shape();
+  const auto samples = all_samples.first(kStartSamples);
+  const NetworkShape& shape = objective->shape();
   double cost = 0.0;
   std::vector<double> gradient(shape.num_weights());
-  if (!MakeObjective(problem, samples)->Gradient(weights.data(), &cost, gradient.data())) {
+  if (!objective->Gradient(weights.data(), &cost, gradient.data())) {
     return StartQuality::kNotFinite;
   }
   const auto rest = gradient.begin() + shape.block_size(0);
@@ -59,9 +58,9 @@ StartQuality Judge(const FitProblem& problem, std::span<const BrdfSample> all_sa
 
 }  // namespace
 
-void CheckStart(const FitProblem& problem, std::span<const BrdfSample> samples,
+void CheckStart(Objective* objective, const EncodedSamples& samples,
                 const std::vector<double>& weights) {
-  const StartQuality quality = Judge(problem, samples, weights);
+  const StartQuality quality = Judge(objective, samples, weights);
   if (quality == StartQuality::kNotFinite) {
     Fail("initial_weights: the cost or its gradient isn't finite there");
   }
@@ -73,20 +72,23 @@ void CheckStart(const FitProblem& problem, std::span<const BrdfSample> samples,
   }
 }
 
-RandomStart DrawStart(const FitProblem& problem, std::span<const BrdfSample> samples, int index) {
+RandomStart DrawStart(const FitProblem& problem, Objective* objective,
+                      const EncodedSamples& samples, int index) {
   RandomStart start;
   std::vector<double> constant;
-  for (int restart = 0; restart <= kMostRestarts; ++restart) {
-    const std::uint64_t seed = problem.seed + static_cast<std::uint64_t>(index) * kIndexSeed +
+  for (int restart = 0; restart <= kMaxRestarts; ++restart) {
+    const std::uint64_t seed = problem.sampling.seed +
+                               static_cast<std::uint64_t>(index) * kIndexSeed +
                                static_cast<std::uint64_t>(restart) * kRestartSeed;
-    start.weights = InitialWeights(problem.Shape(), samples, seed, problem.initialization);
-    const StartQuality quality = Judge(problem, samples, start.weights);
+    start.weights =
+        InitialWeights(problem.Shape(), samples.samples(), seed, problem.network.initialization);
+    const StartQuality quality = Judge(objective, samples, start.weights);
     if (quality == StartQuality::kGood) return start;
     if (quality == StartQuality::kConstant && constant.empty()) constant = start.weights;
-    if (restart < kMostRestarts) ++start.restarts;
+    if (restart < kMaxRestarts) ++start.restarts;
   }
   if (constant.empty()) {
-    Fail("no start: at each of ", kMostRestarts + 1,
+    Fail("no start: at each of ", kMaxRestarts + 1,
          " random ones the cost isn't finite or its gradient is 0");
   }
   start.weights = constant;

@@ -1,17 +1,20 @@
 // start.h: weights that a fit can start from.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "pbnbrdf/problem/fit_problem.h"
+#include "pbnbrdf/problem/objective.h"
+#include "problem/encoded_samples.h"
 
 namespace pbnbrdf {
+
+// That tell whether weights are a start: what `objective` below should hold, or all if there are fewer.
+inline constexpr std::size_t kStartSamples = 1024;
 
 // Throws Error if a fit can't go on from weights that were given: the cost or its gradient isn't
 // finite; or the gradient is 0 and the cost isn't; or the network is constant and stays so, no weight
 // of its first layer having a gradient, and the material isn't constant.
-void CheckStart(const FitProblem& problem, std::span<const BrdfSample> samples,
+void CheckStart(Objective* objective, const EncodedSamples& samples,
                 const std::vector<double>& weights);
 
 struct RandomStart {
@@ -21,6 +24,7 @@ struct RandomStart {
 
 // Random weights, others for each index: the first of a few that a fit can go on from. Those of a
 // constant network have to do if there are no others. Throws Error if there are none.
-RandomStart DrawStart(const FitProblem& problem, std::span<const BrdfSample> samples, int index);
+RandomStart DrawStart(const FitProblem& problem, Objective* objective,
+                      const EncodedSamples& samples, int index);
 
 }  // namespace pbnbrdf

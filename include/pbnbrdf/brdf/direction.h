@@ -9,6 +9,8 @@ namespace pbnbrdf {
 
 struct Vec3 {
   double x = 0.0, y = 0.0, z = 0.0;
+
+  bool operator==(const Vec3&) const = default;
 };
 
 inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

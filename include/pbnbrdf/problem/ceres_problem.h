@@ -9,18 +9,13 @@
 
 namespace pbnbrdf {
 
-enum class JacobianMethod {
-  kCondensed,  // one block of P + 1 residuals (condensed_cost_function.h)
-  kAutodiff,   // a block a sample and term, jets through the whole network: the slow reference
-};
-
-inline constexpr NameTable<JacobianMethod, 2> kJacobianMethods = {
-    {{"condensed", JacobianMethod::kCondensed}, {"autodiff", JacobianMethod::kAutodiff}}};
-
-// weights: shape().num_weights() numbers, the parameter blocks. objective and weights must outlive
-// `ceres_problem`.
+// One block of P + 1 residuals, whose normal equations are those of all samples
+// (condensed_cost_function.h). weights: shape().num_weights() numbers, the parameter blocks. objective and
+// weights must outlive `ceres_problem`.
 void AddCondensed(Objective* objective, double* weights, ceres::Problem* ceres_problem);
 
+// A block for each sample and term, and for each stratum of the energy term, differentiated by jets
+// through the whole network: the slow reference.
 void AddAutodiff(const FitProblem& problem, std::span<const BrdfSample> samples,
                  std::span<const EnergyStratum> strata, double* weights,
                  ceres::Problem* ceres_problem);

@@ -14,11 +14,11 @@ struct EnergyStratum {
   Rgb limit = {1.0, 1.0, 1.0};  // the largest directional albedo that costs nothing
 };
 
-// problem.energy_strata values of cos theta_i, in the middle of equal parts of [0, 1], and for
-// anisotropic encodings problem.energy_azimuths phi_i with each: equal in solid angle.
+// energy_strata of the terms' options values of cos theta_i, in the middle of equal parts of [0, 1], and for
+// anisotropic encodings energy_azimuths phi_i with each: equal in solid angle.
 std::vector<EnergyStratum> EqualStrata(const FitProblem& problem);
 
-// The energy term's quadrature for the k-th stratum: problem.energy_theta x energy_phi nodes, or a
+// The energy term's quadrature for the k-th stratum: energy_theta x energy_phi nodes, or a
 // few more, so that no two neighbours have theirs in the same places: where they do, a network
 // learns to be dark at the nodes and bright in between.
 AlbedoQuadrature QuadratureOfStratum(const FitProblem& problem, std::size_t k);

@@ -15,38 +15,16 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "pbnbrdf/base/names.h"
 #include "pbnbrdf/network/network_shape.h"
 #include "pbnbrdf/problem/sampling.h"
 
-namespace ceres {
-class LossFunction;
-}
-
 namespace pbnbrdf {
-
-enum class Loss {
-  kL2,
-  kSoftL1,
-  kHuber,
-  kCauchy,
-  kAbsolute,  // of first-order solvers only
-};
-
-inline constexpr NameTable<Loss, 5> kLosses = {{{"l2", Loss::kL2},
-                                                {"soft_l1", Loss::kSoftL1},
-                                                {"huber", Loss::kHuber},
-                                                {"cauchy", Loss::kCauchy},
-                                                {"absolute", Loss::kAbsolute}}};
-
-// Of the network's passes; residuals, their derivatives and all long sums are always double.
-enum class Precision { kSingle, kDouble };
-
-inline constexpr NameTable<Precision, 2> kPrecisions = {
-    {{"single", Precision::kSingle}, {"double", Precision::kDouble}}};
 
 // Uniform random weights.
 enum class Initialization {
@@ -57,33 +35,38 @@ enum class Initialization {
 inline constexpr NameTable<Initialization, 2> kInitializations = {
     {{"glorot", Initialization::kGlorot}, {"nbrdf", Initialization::kNbrdf}}};
 
-struct FitProblem {
-  // The network.
-  Encoding encoding = Encoding::kMerl;
+struct NetworkOptions {
+  std::optional<Encoding> encoding;  // none: what suits the material (EncodingFor)
   std::vector<int> hidden = {21, 21};
   Activation activation = Activation::kTanh;
   Initialization initialization = Initialization::kGlorot;
-  int channels = 3;  // or 1, of materials that have one only: its output is then r = g = b
+  int channels = 0;  // outputs: 3, 1, or 0: as many as the material has channels
 
-  // The terms' weights, >= 0; 0: the term is absent. At least one > 0.
-  double log_weight = 1.0;
-  double chromaticity_weight = 0.0;
-  double energy_weight = 1.0;
+  // What is left open is taken as for an isotropic material of three channels.
+  NetworkShape Shape() const;
+};
+
+enum class Loss {
+  kL2,
+  kSoftL1,
+  kAbsolute,  // of first-order solvers only
+};
+
+inline constexpr NameTable<Loss, 3> kLosses = {
+    {{"l2", Loss::kL2}, {"soft_l1", Loss::kSoftL1}, {"absolute", Loss::kAbsolute}}};
+
+// A term by its name (terms.h), and its weight > 0.
+struct WeightedTerm {
+  std::string name;
+  double weight = 1.0;
+};
+
+struct TermOptions {
+  // Each name once; a term over samples must be among them.
+  std::vector<WeightedTerm> weights = {{"log", 1.0}, {"energy", 1.0}};
 
   Loss loss = Loss::kSoftL1;
   double loss_scale = 0.001;  // > 0, the residual at which rho turns from square to linear
-
-  // The training samples. A fit starts on the first few of them and takes `growth` times as many
-  // each time that the cost falls slowly, up to all.
-  // `asked`, if not null, says where a scene asks for the material: all but a part of `asked_floor`
-  // come from there.
-  Sampling sampling = Sampling::kHighlight;
-  std::shared_ptr<const AngleDistribution> asked;
-  double asked_floor = 0.5;  // in [0, 1]
-  std::size_t samples = 60000;
-  std::size_t first_samples = 1000;
-  double growth = 3.0;     // > 1
-  std::uint64_t seed = 1;  // of the samples and of the initial weights
 
   // The energy term: strata of theta_i, and of phi_i for anisotropic encodings, equal in solid
   // angle; the nodes of the quadrature for each of them (brdf/albedo.h).
@@ -93,21 +76,38 @@ struct FitProblem {
   int energy_phi = 48;
   bool energy_skip = true;  // to leave out strata far below 1 (energy_term.h)
 
-  Precision precision = Precision::kSingle;
+  // 0 of a term that is absent.
+  double Weight(std::string_view name) const;
+  double EnergyWeight() const { return Weight("energy"); }
+
+  // 0 removes the term.
+  void SetWeight(std::string_view name, double weight);
+};
+
+struct SamplingOptions {
+  Sampling angles = Sampling::kHighlight;
+  // If not null, where a scene asks for the material: all samples but a part of `asked_floor` come
+  // from there.
+  std::shared_ptr<const AngleDistribution> asked;
+  double asked_floor = 0.5;       // in [0, 1]
+  std::uint64_t samples = 60000;  // at most, for training
+  std::uint64_t seed = 1;         // of the samples and of the initial weights
 
   SampleAngles Angles() const;
-  NetworkShape Shape() const { return NetworkShape(encoding, hidden, activation, channels); }
+};
+
+struct FitProblem {
+  NetworkOptions network;
+  TermOptions terms;
+  SamplingOptions sampling;
+
+  NetworkShape Shape() const { return network.Shape(); }
+
+  // The same with what is left open settled: encoding and channels.
+  FitProblem For(const Brdf& material) const;
 
   // Throws Error, naming the field, its value and what it must be.
   void Validate() const;
 };
-
-// rho, or null for l2, which Ceres takes for rho(s) = s, and for absolute, which has none.
-std::unique_ptr<ceres::LossFunction> MakeLoss(Loss loss, double scale);
-
-// Where a fit to `samples` starts: shape.num_weights() numbers.
-std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const BrdfSample> samples,
-                                   std::uint64_t seed,
-                                   Initialization initialization = Initialization::kGlorot);
 
 }  // namespace pbnbrdf

@@ -2,6 +2,7 @@
 // that any solver needs to know of a fit.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -9,10 +10,22 @@
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "pbnbrdf/problem/linearization.h"
-#include "pbnbrdf/problem/sampling.h"
-#include "problem/energy_term.h"
 
 namespace pbnbrdf {
+
+class EncodedSamples;
+
+// Of the network's passes; residuals, their derivatives and all long sums are always double.
+enum class Precision { kSingle, kDouble };
+
+inline constexpr NameTable<Precision, 2> kPrecisions = {
+    {{"single", Precision::kSingle}, {"double", Precision::kDouble}}};
+
+// How often a directional albedo and its derivatives were computed, and how often they needn't be.
+struct EnergyWork {
+  std::int64_t albedos = 0, albedos_skipped = 0;
+  std::int64_t jacobians = 0, jacobians_skipped = 0;
+};
 
 class Objective {
  public:
@@ -20,8 +33,14 @@ class Objective {
 
   virtual const NetworkShape& shape() const = 0;
 
-  // Of the training samples.
+  // Of those it was made with, how many it takes.
   virtual std::size_t num_samples() const = 0;
+
+  // Takes the first `count` of its samples from now on, at least num_samples().
+  virtual void Grow(std::size_t count) = 0;
+
+  // Sets weight, >= 0, and strata of the energy term.
+  virtual void SetEnergy(double weight, std::span<const EnergyStratum> strata) = 0;
 
   // The cost; not finite where the network overflows. weights: shape().num_weights().
   virtual double Cost(const double* weights) = 0;
@@ -31,27 +50,28 @@ class Objective {
   virtual bool Linearize(const double* weights, CurvaturePart part, Linearization* at) = 0;
   bool Linearize(const double* weights, Linearization* at) { return Linearize(weights, {}, at); }
 
-  // The cost and its gradient (P; J'r where there are residuals) alone. False, with both unspecified, if they aren't finite.
+  // The cost and its gradient (P; J'r where there are residuals) alone. False, with both unspecified,
+  // if they aren't finite.
   virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;
 
   // About the largest error of hessian, relative to its diagonal, that rounding makes.
   virtual double HessianRounding() const = 0;
 
-  // Mean over samples and channels of |log1p(f cos_i) - log1p(max(0, f^) cos_i)|.
+  // Mean over samples and channels of |log1p(f cos_i) - log1p(max(0, f^) cos_i)|, whatever the terms.
   virtual double MeanAbsLogError(const double* weights) = 0;
 
   // Of the energy term so far.
   virtual const EnergyWork& energy_work() const = 0;
 };
 
-// `problem` must be valid. strata: of the energy term. Work is shared among the threads that TBB
-// grants; the result doesn't depend on their number.
-std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
-                                         std::span<const BrdfSample> samples,
-                                         std::span<const EnergyStratum> strata);
+// `problem` must be valid. Takes the first `count` of the samples; the energy term starts with the
+// problem's weight and EqualStrata. Work is shared among the threads that TBB grants; the result doesn't
+// depend on their number. samples must outlive it.
+std::unique_ptr<Objective> MakeObjective(const FitProblem& problem, Precision precision,
+                                         const EncodedSamples& samples, std::size_t count);
 
-// With EqualStrata.
-std::unique_ptr<Objective> MakeObjective(const FitProblem& problem,
+// Of all samples, which are copied.
+std::unique_ptr<Objective> MakeObjective(const FitProblem& problem, Precision precision,
                                          std::span<const BrdfSample> samples);
 
 }  // namespace pbnbrdf

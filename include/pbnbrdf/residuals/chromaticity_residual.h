@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 #include "pbnbrdf/brdf/direction.h"
 #include "pbnbrdf/network/mlp.h"
@@ -13,6 +14,9 @@ namespace pbnbrdf {
 //   residuals T[1], unitless.
 class ChromaticityResidual {
  public:
+  static constexpr std::string_view kName = "chromaticity", kHelp = "eq. 7";
+  static constexpr double kDefaultWeight = 0.1;  // the least error of colour (experiments/README.md)
+  static constexpr bool kNeedsColor = true;
   static constexpr int kNumResiduals = 1;
 
   // f: 1/sr, >= 0. cos_i in [0, 1].

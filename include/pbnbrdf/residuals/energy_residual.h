@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "pbnbrdf/network/mlp.h"
@@ -14,6 +15,8 @@ namespace pbnbrdf {
 //   residuals T[3], unitless.
 class EnergyResidual {
  public:
+  static constexpr std::string_view kName = "energy", kHelp = "eq. 5";
+  static constexpr double kDefaultWeight = 1.0;
   static constexpr int kNumResiduals = 3;
 
   // solid_angle: w, of the stratum, sr. node_weights: v_m > 0, cosine included (brdf/albedo.h).

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 #include "pbnbrdf/brdf/direction.h"
 #include "pbnbrdf/network/mlp.h"
@@ -13,6 +14,9 @@ namespace pbnbrdf {
 //   residuals T[3], unitless.
 class LogResidual {
  public:
+  static constexpr std::string_view kName = "log", kHelp = "eq. 6";
+  static constexpr double kDefaultWeight = 1.0;
+  static constexpr bool kNeedsColor = false;  // whether it says nothing of a single channel
   static constexpr int kNumResiduals = 3;
 
   // f: 1/sr, >= 0. cos_i in [0, 1].

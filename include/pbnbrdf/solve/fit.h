@@ -5,16 +5,13 @@
 //   fit.network.Write("gold.safetensors");
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/problem/ceres_problem.h"
-#include "pbnbrdf/problem/fit_problem.h"
-#include "solve/adam.h"
-#include "solve/stage.h"
+#include "pbnbrdf/problem/objective.h"
 
 namespace pbnbrdf {
 
@@ -25,39 +22,66 @@ struct FitProgress {
   double seconds = 0.0;        // since the start, without evaluating heldout_error
 };
 
-enum class Solver {
-  kTinyLm,  // Levenberg-Marquardt on the normal equations (tiny_lm.h)
-  kLm,  // Ceres' Levenberg-Marquardt (ceres_solvers.h): the same steps, at several times the cost
-  kLbfgs,  // Ceres' L-BFGS: cheap iterations, but thousands of them
-  kAdam,   // Adam on minibatches of the papers' own loss (adam.h), the published solver
-};
-
-inline constexpr NameTable<Solver, 4> kSolvers = {{{"tiny_lm", Solver::kTinyLm},
-                                                   {"lm", Solver::kLm},
-                                                   {"lbfgs", Solver::kLbfgs},
-                                                   {"adam", Solver::kAdam}}};
-
-struct FitOptions {
-  Solver solver = Solver::kTinyLm;
-  JacobianMethod jacobian = JacobianMethod::kCondensed;  // autodiff: always with kLm
-  // Where to start from: problem.Shape().num_weights() numbers, or none for random ones.
-  std::vector<double> initial_weights;
+// When a fit takes more samples, and when it ends.
+struct ScheduleOptions {
+  // A fit starts on the first few samples and takes `growth` times as many each time that the cost falls
+  // slowly, up to all. Adam has all from the start.
+  std::uint64_t first_samples = 1000;
+  double growth = 3.0;  // > 1
   // Short runs from different random weights, of which the best one goes on; >= 1, Adam: 1.
   int starts = 1;
-  // tiny_lm sums J'J over about so many of the samples, others each time (linearization.h); >= 1.
-  std::size_t curvature_samples = 4096;
+  // lm sums J'J over about so many of the samples, others each time (linearization.h); >= 1.
+  std::uint64_t curvature_samples = 4096;
   int max_iterations = 400;     // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;  // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
                                      // with Adam is that of a mean (adam.h)
-  AdamOptions adam;                  // of Solver::kAdam
+};
+
+// Of Adam; NBRDF's settings (Sztrajman et al. 2021) are the defaults.
+struct AdamOptions {
+  std::uint64_t batch = 512;    // samples a step, >= 1; an epoch's last, smaller batch is left out
+  double learning_rate = 5e-4;  // > 0
+  int energy_angles = 2;        // incident angles a step of the energy term, 1 to 1024
+};
+
+struct FitOptions {
+  // By name:
+  //   lm           Levenberg-Marquardt on the normal equations (lm.h)
+  //   ceres_lm     Ceres' own: the same steps, at several times the cost
+  //   ceres_lbfgs  Ceres' L-BFGS: cheap iterations, but thousands of them
+  //   adam         on minibatches of the papers' own loss (adam.h), the published solver
+  //   autodiff     Ceres' Levenberg-Marquardt on jets through the whole network: the slow reference
+  std::string solver = "lm";
+  ScheduleOptions schedule;
+  AdamOptions adam;
+  Precision precision = Precision::kSingle;
   // With the energy term: to end with no directional albedo above 1, by lowering the whole network
   // if the term didn't get there. The published scripts don't.
   bool certify_energy = true;
   int threads = 0;  // 0: as many as the machine has
+  // Where to start from: Shape().num_weights() numbers of the problem, or none for random ones.
+  std::vector<double> initial_weights;
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
 };
+
+enum class Termination {
+  kConverged,
+  kMaxIterations,
+  kMaxSeconds,
+  kInterrupted,
+  // The cost or its derivatives aren't finite any more, or no step can be computed. The weights are
+  // the best ones before.
+  kDiverged,
+};
+
+inline constexpr NameTable<Termination, 5> kTerminations = {
+    {{"converged", Termination::kConverged},
+     {"max_iterations", Termination::kMaxIterations},
+     {"max_seconds", Termination::kMaxSeconds},
+     {"interrupted", Termination::kInterrupted},
+     {"diverged", Termination::kDiverged}}};
 
 // What the energy term did, and how the fit came to conserve energy.
 struct EnergySummary {
@@ -73,10 +97,12 @@ struct FitSummary {
   double final_cost = 0.0;  // fit_problem.h
   int iterations = 0;       // of all stages
   int restarts = 0;  // random weights drawn anew, as the cost wasn't finite or the network was dead
-  int failed_factorizations = 0;  // of all stages (stage.h)
-  int rejected_steps = 0;         // likewise
-  std::size_t samples = 0;        // that the fit had grown to
-  EnergySummary energy;           // of a fit with the energy term
+  // Iterations of Levenberg-Marquardt for which no step could be computed, and whose step was too poor to
+  // take; of all stages.
+  int failed_factorizations = 0;
+  int rejected_steps = 0;
+  std::size_t samples = 0;  // that the fit had grown to
+  EnergySummary energy;     // of a fit with the energy term
   // Of single precision only: rounding changes the final cost by more than a hundredth, so that
   // double precision would have gone further.
   bool precision_limited = false;
@@ -87,6 +113,7 @@ struct FitSummary {
 
 struct Fit {
   NeuralBrdf network;
+  FitProblem problem;  // that was solved: with the encoding and the channels that suit the material
   FitSummary summary;
 };
 
@@ -94,12 +121,11 @@ struct Fit {
 // don't go together.
 void ValidateFit(const FitProblem& problem, const FitOptions& options);
 
-// The fit starts on few samples and grows (FitProblem::first_samples). The same arguments give the
-// same network to the last bit, whatever the number of threads. The energy term joins in a second
-// stage, if the directional albedo of the first stage's network exceeds 1 in a stratum; Adam, as
-// published, has it and all samples from the start. An anisotropic material takes any encoding, an
-// isotropic one gives the best isotropic fit. A solver that diverges ends the fit with the best
-// network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the encoding is
+// The same arguments give the same network to the last bit, whatever the number of threads. The energy
+// term joins in a second stage, if the directional albedo of the first stage's network exceeds 1 in a
+// stratum; Adam, as published, has it and all samples from the start. An anisotropic material takes any
+// encoding, an isotropic one gives the best isotropic fit. A solver that diverges ends the fit with the
+// best network so far (Termination::kDiverged). Throws Error as ValidateFit does, if the encoding is
 // anisotropic and the material isn't, if the material has next to no data, and where there is no
 // start: at the given weights, or at each of several random ones, the cost or a derivative isn't
 // finite, or the gradient is 0 and the cost isn't; or the given network is constant and would stay

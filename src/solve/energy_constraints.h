@@ -1,4 +1,4 @@
-// energy_conservation.h: how a fit ends with no directional albedo above 1, at any incident
+// energy_constraints.h: how a fit ends with no directional albedo above 1, at any incident
 // direction: infinitely many constraints, of which only those that matter are kept [1].
 //
 // From round to round the albedos are measured by a quadrature much finer than the energy term's.
@@ -18,7 +18,7 @@ namespace pbnbrdf {
 
 // The largest directional albedo that a fit with the energy term may have by its own check, so that
 // other checks, at other angles and by other quadratures, find at most 1 + 1e-6.
-inline constexpr double kMostAlbedo = 1.0 - 2e-5;
+inline constexpr double kMaxAlbedo = 1.0 - 2e-5;
 
 class EnergyConstraints {
  public:
@@ -35,7 +35,7 @@ class EnergyConstraints {
  private:
   void AddStratum(const IncidentAlbedo& at);
 
-  const FitProblem& problem_;
+  const FitProblem problem_;
   NetworkShape shape_;
   double solid_angle_;
   std::vector<EnergyStratum> strata_;
@@ -52,7 +52,7 @@ struct Correction {
 };
 
 // Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by about
-// the least s of each channel with which no directional albedo is above kMostAlbedo. A reciprocal
+// the least s of each channel with which no directional albedo is above kMaxAlbedo. A reciprocal
 // network stays so.
 Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
 

@@ -1,4 +1,4 @@
-// tiny_lm.h: Levenberg-Marquardt on the normal equations of an Objective.
+// lm.h: Levenberg-Marquardt on the normal equations of an Objective.
 //
 // The steps are those of Ceres' trust region [1]; what differs is the linear algebra, which
 // Debian's libceres has compiled for any x86-64: an iteration here costs little more than the
@@ -17,7 +17,7 @@ namespace pbnbrdf {
 
 // weights: where to start, and on return and in callbacks the best found. Diverged if the objective
 // isn't finite at the start; converged at once where its gradient is 0.
-StageResult MinimizeTinyLm(Objective* objective, const StageOptions& options,
-                           std::vector<double>* weights);
+StageResult MinimizeLm(Objective* objective, const StageOptions& options,
+                       std::vector<double>* weights);
 
 }  // namespace pbnbrdf

@@ -1,4 +1,4 @@
-#include "solve/tiny_lm.h"
+#include "solve/lm.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,14 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kSmallestRadius = 1e-32, kLargestRadius = 1e16;
-constexpr double kLeastDecrease = 1e-3;  // of the predicted one, for a step to be taken
-constexpr int kMostRisingSteps = 5;
-constexpr double kMostRise = 4.0;  // of the cost over the least one so far
+constexpr double kMinRadius = 1e-32, kMaxRadius = 1e16;  // Ceres' defaults
+constexpr double kMinDecrease =
+    1e-3;                           // of the predicted one, for a step to be taken; Ceres' default
+constexpr int kMaxRisingSteps = 5;  // Ceres' default (max_consecutive_nonmonotonic_steps)
+constexpr double kMaxRise = 4.0;    // of the cost over the least one so far
 // The damping is relative to the diagonal of J'J in weights scaled by 1 / (1 + |J_i|), and there at
-// least this.
-constexpr double kLeastDiagonal = 1e-6;
+// least this: Ceres' default (min_lm_diagonal).
+constexpr double kMinDiagonal = 1e-6;
 
 // Whether a step is good enough, judged against a cost that may lie a few steps back.
 class StepJudge {
@@ -29,7 +30,7 @@ class StepJudge {
   // The decrease of the cost over the predicted one, the better of: of this step, of all since the
   // reference. -1 where the cost isn't finite or too high for a way over a ridge.
   double Quality(double cost, double predicted) const {
-    if (!(cost <= kMostRise * least_)) return -1.0;
+    if (!(cost <= kMaxRise * least_)) return -1.0;
     return std::max((current_ - cost) / predicted,
                     (reference_ - cost) / (since_reference_ + predicted));
   }
@@ -49,7 +50,7 @@ class StepJudge {
         since_candidate_ = 0.0;
       }
     }
-    if (rising_steps_ == kMostRisingSteps) {
+    if (rising_steps_ == kMaxRisingSteps) {
       reference_ = candidate_;
       since_reference_ = since_candidate_;
     }
@@ -61,9 +62,9 @@ class StepJudge {
   int rising_steps_ = 0;
 };
 
-class TinyLm {
+class LevenbergMarquardt {
  public:
-  TinyLm(Objective* objective, const StageOptions& options, std::vector<double>* best)
+  LevenbergMarquardt(Objective* objective, const StageOptions& options, std::vector<double>* best)
       : objective_(objective),
         options_(options),
         best_(best),
@@ -89,7 +90,7 @@ class TinyLm {
       if (has_step) cost = objective_->Cost(trial_.data());
       const double quality = judge.Quality(cost, predicted);
       const double change = std::abs(at_.cost - cost);
-      if (!(quality > kLeastDecrease)) {
+      if (!(quality > kMinDecrease)) {
         ++(has_step ? result_.rejected_steps : result_.failed_factorizations);
         ShrinkRadius();
         if (Stalled(change)) break;
@@ -155,9 +156,8 @@ class TinyLm {
 
   // When the radius is spent, or the cost moves by no more than rounding makes it.
   bool Stalled(double change) {
-    if (radius_ < kSmallestRadius) {
-      Stop(Termination::kConverged,
-           StrCat("trust region radius ", radius_, " < ", kSmallestRadius));
+    if (radius_ < kMinRadius) {
+      Stop(Termination::kConverged, StrCat("trust region radius ", radius_, " < ", kMinRadius));
       return true;
     }
     if (change <= options_.function_tolerance * at_.cost) {
@@ -187,7 +187,7 @@ class TinyLm {
     std::vector<double> damping(p);
     for (std::size_t i = 0; i < p; ++i) {
       const double scaled = scale_[i] * scale_[i] * Diagonal(i);
-      damping[i] = std::max(scaled, kLeastDiagonal) / (radius_ * scale_[i] * scale_[i]);
+      damping[i] = std::max(scaled, kMinDiagonal) / (radius_ * scale_[i] * scale_[i]);
       double* row = cholesky_.row(static_cast<int>(i));
       std::copy_n(&at_.hessian[i * p], i + 1, row);
       row[i] += damping[i];
@@ -211,7 +211,7 @@ class TinyLm {
 
   void GrowRadius(double quality) {
     radius_ /= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * quality - 1.0, 3));
-    radius_ = std::min(radius_, kLargestRadius);
+    radius_ = std::min(radius_, kMaxRadius);
     shrink_ = 2.0;
   }
 
@@ -228,9 +228,9 @@ class TinyLm {
 
 }  // namespace
 
-StageResult MinimizeTinyLm(Objective* objective, const StageOptions& options,
-                           std::vector<double>* weights) {
-  return TinyLm(objective, options, weights).Run();
+StageResult MinimizeLm(Objective* objective, const StageOptions& options,
+                       std::vector<double>* weights) {
+  return LevenbergMarquardt(objective, options, weights).Run();
 }
 
 }  // namespace pbnbrdf

@@ -1,4 +1,4 @@
-#include "solve/energy_conservation.h"
+#include "solve/energy_constraints.h"
 
 #include <tbb/parallel_for.h>
 
@@ -18,8 +18,8 @@ constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .tolerance = 1e
 constexpr AlbedoGrid kLastGrid = {.angles = 160, .n_phi = 64};
 constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
-constexpr double kLeastStep = 1e-7;      // of a correction
-constexpr int kMostCorrections = 50, kMostNewtonSteps = 50;
+constexpr double kMinStep = 1e-7;        // of a correction
+constexpr int kMaxCorrections = 50, kMaxNewtonSteps = 50;
 constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
 
 const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
@@ -39,7 +39,7 @@ double LoweringAt(const Brdf& network, const IncidentAlbedo& there, int channel,
   std::vector<Rgb> values(pairs.size());
   network.Evaluate(pairs, values);
   double lowering = 0.0;
-  for (int k = 0; k < kMostNewtonSteps; ++k) {
+  for (int k = 0; k < kMaxNewtonSteps; ++k) {
     // The albedo, and minus its derivative, of f' = max(0, (1 + f) exp(-lowering) - 1): convex, so
     // that Newton's steps don't go too far.
     double albedo = 0.0, slope = 0.0;
@@ -89,7 +89,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     EnergyStratum& stratum = strata_[k];
     const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
     const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
-    for (int c = 0; c < 3; ++c) stratum.limit[c] = kMostAlbedo - (exact[c] - own[c]);
+    for (int c = 0; c < 3; ++c) stratum.limit[c] = kMaxAlbedo - (exact[c] - own[c]);
   });
   return Largest(LargestAlbedos(profile_));
 }
@@ -104,16 +104,16 @@ void EnergyConstraints::Exchange() {
 
 // Unless there is one already, or no need of one.
 void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
-  if (!(Largest(at.albedo) > kMostAlbedo)) return;
+  if (!(Largest(at.albedo) > kMaxAlbedo)) return;
   const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
   for (const EnergyStratum& stratum : strata_) {
     if (Length(stratum.wi - wi) <= kSameDirection * wi.z) return;
   }
-  strata_.push_back({wi, solid_angle_, {kMostAlbedo, kMostAlbedo, kMostAlbedo}});
+  strata_.push_back({wi, solid_angle_, {kMaxAlbedo, kMaxAlbedo, kMaxAlbedo}});
 }
 
 double CorrectionOf(double max_albedo) {
-  return std::log((std::max(max_albedo, kMostAlbedo) + kPi) / (kMostAlbedo + kPi));
+  return std::log((std::max(max_albedo, kMaxAlbedo) + kPi) / (kMaxAlbedo + kPi));
 }
 
 Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
@@ -122,8 +122,8 @@ Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weigh
   double largest = 0.0;
   // In single precision until nothing is left to do; then in double.
   for (bool exactly : {false, true}) {
-    const double bound = exactly ? kMostAlbedo : kMostAlbedo - kRounding;
-    for (int k = 0; k < kMostCorrections; ++k) {
+    const double bound = exactly ? kMaxAlbedo : kMaxAlbedo - kRounding;
+    for (int k = 0; k < kMaxCorrections; ++k) {
       const NeuralBrdf exact(shape, *weights);
       const FastNeuralBrdf fast(exact);
       const Brdf& network = exactly ? static_cast<const Brdf&>(exact) : fast;
@@ -133,7 +133,7 @@ Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weigh
       const Rgb lowering = Lowering(network, profile, bound);
       for (int c = 0; c < shape.num_outputs(); ++c) {
         if (lowering[c] == 0.0) continue;
-        const double step = lowering[c] + std::ldexp(kLeastStep, k);  // more, if it goes on and on
+        const double step = lowering[c] + std::ldexp(kMinStep, k);  // more, if it goes on and on
         sum[c] += step;
         (*weights)[shape.offset(last) + c * (in + 1) + in] -= step;
       }

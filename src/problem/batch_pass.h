@@ -1,0 +1,69 @@
+// batch_pass.h: the terms over samples at one batch: through the network, and their derivatives back to
+// the outputs of the network.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "network/batched_mlp.h"
+#include "problem/robust_loss.h"
+#include "problem/terms.h"
+
+namespace pbnbrdf {
+
+// The terms, with weights that make each a mean over the samples.
+struct SampleTerms {
+  std::vector<WeightedSampleTerm> terms;
+  RobustLoss loss;
+  std::size_t samples = 0;
+
+  int rows() const;
+  double WeightOf(const WeightedSampleTerm& term) const {
+    return term.weight / static_cast<double>(samples);
+  }
+};
+
+// Holds the intermediate values of one batch, so each thread needs its own. T is float or double.
+template <typename T>
+class BatchPass {
+ public:
+  // rows: of the backward pass: terms->rows(), 1, or 0 where there is none. terms must outlive this.
+  BatchPass(const NetworkShape& shape, const SampleTerms& terms, int rows);
+
+  const BatchedMlp<T>& mlp() const { return mlp_; }
+
+  // input of the following: by feature, batch b of `size` samples.
+  double Cost(const T* weights, const T* input, std::size_t b, int size);
+
+  // A row for each residual, weighted by the robust loss, ready for NormalEquations<T>::AddBatch. Adds to
+  // *cost.
+  void Linearize(const T* weights, const T* input, std::size_t b, int size, double* cost);
+  const T* residuals() const { return residuals_.data(); }
+
+  // One row, the sum of all of a sample's rows times their residuals. Adds J'r to gradient (P) and to
+  // *cost.
+  void AddGradient(const T* weights, const T* input, std::size_t b, int size, T* gradient,
+                   double* cost);
+
+ private:
+  static constexpr int kChannels = NetworkShape::kChannels;
+  static constexpr int kBatch = kernels::kBatch;
+
+  void Forward(const T* weights, const T* input);
+  void AddSquares(const TermBatch& batch, int rows, double weight, int size, double* cost);
+  void AddAbsolutes(const TermBatch& batch, int rows, double weight, int size, double* cost);
+  double SquaredNorm(const TermBatch& batch, int rows, int n) const;
+  void ClearRows();
+
+  const SampleTerms& terms_;
+  BatchedMlp<T> mlp_;
+  std::vector<TermBatch> batches_;  // one a term
+  AlignedVector<double> z_;         // the outputs, kChannels x kBatch
+  AlignedVector<double> sum_;       // of rows times residuals, kChannels x kBatch
+  AlignedVector<T> residuals_;      // row after row
+};
+
+extern template class BatchPass<float>;
+extern template class BatchPass<double>;
+
+}  // namespace pbnbrdf

@@ -1,0 +1,76 @@
+// training.h: a fit in progress: samples, objectives, weights, clock and summary.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "pbnbrdf/problem/sampling.h"
+#include "problem/encoded_samples.h"
+#include "solve/pace.h"
+#include "solve/solver.h"
+
+namespace pbnbrdf {
+
+class Training {
+ public:
+  // problem: of a material (FitProblem::For). It starts without the energy term, unless the solver is
+  // stochastic. material and options must outlive this.
+  Training(const Brdf& material, const FitProblem& problem, const FitOptions& options);
+
+  const Solver& solver() const { return solver_; }
+  const FitOptions& options() const { return options_; }
+  const FitProblem& problem() const { return problem_; }
+  FitSummary& summary() { return summary_; }
+  std::vector<double>& weights() { return weights_; }
+
+  // On the training samples so far, and on others that no solver sees.
+  Objective& objective() { return *objective_; }
+  Objective& validation() { return *validation_; }
+
+  // Starts at the given weights, or at random ones. Throws Error if these lead nowhere.
+  void Start();
+  // At random weights, those of the index-th start.
+  void StartAnew(int index);
+
+  // Whether neither the user nor the clock has ended the fit.
+  bool MayContinue() const;
+
+  bool HasAllSamples() const { return samples_.size() == max_samples_; }
+  void TakeMoreSamples();
+
+  // Whether J'J is summed over a part of the samples.
+  bool HasPartOfCurvature() const;
+  void TakeMoreCurvature();
+
+  // Of the energy term, from now on.
+  void SetEnergy(double weight, std::vector<EnergyStratum> strata);
+
+  // Runs the solver, at most so many iterations, from the weights and to the best ones. Returns the cost.
+  // A stage whose cost isn't finite at its start leaves that of the stage before in the summary.
+  double Minimize(int max_iterations, std::function<bool(int iteration, double cost)> on_iteration);
+
+  // Tells the user, if there is one, who may stop the fit.
+  bool Report(int iteration, double cost);
+
+  // Completes the summary.
+  void Finish();
+
+ private:
+  bool AgreesInDouble();
+
+  Stopwatch stopwatch_;
+  const FitOptions& options_;
+  const Solver& solver_;
+  FitProblem problem_;
+  SampleStream stream_;
+  std::size_t max_samples_;
+  EncodedSamples samples_, validation_samples_, heldout_samples_;
+  std::vector<EnergyStratum> strata_;
+  std::unique_ptr<Objective> objective_, validation_, heldout_;
+  std::size_t curvature_samples_;
+  std::vector<double> weights_;
+  FitSummary summary_;
+};
+
+}  // namespace pbnbrdf
