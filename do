@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")"
 build=build
-packages="ccache cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libembree-dev libgflags-dev
+packages="ccache clang-format-14 cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libembree-dev
           libgmock-dev libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libopenexr-dev libpng-dev
           libtbb-dev ninja-build nlohmann-json3-dev pkgconf"
 
@@ -27,17 +27,24 @@ install_packages() {
     > /dev/null
 }
 
-# build_in FOLDER [CMAKE_OPTION ...]
-build_in() {
+# configure FOLDER [CMAKE_OPTION ...]
+configure() {
   folder=$1
   shift
   install_packages
-  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" > /dev/null
-  cmake --build "$folder" --parallel "$(nproc)"
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPBNBRDF_WERROR=ON --log-level=WARNING \
+    "$@" > /dev/null
+}
+
+# build [TARGET ...]: all of it if none is named. Every command builds with the same flags in the same folder:
+# nothing is compiled twice.
+build() {
+  configure "$build"
+  cmake --build "$build" --parallel "$(nproc)" --target "${@:-all}"
 }
 
 demo() {
-  build_in "$build" --log-level=WARNING
+  build pbnbrdf_program
   pbnbrdf=$build/bin/pbnbrdf
   material=builtin:satin-gold
   echo
@@ -54,18 +61,18 @@ demo() {
 0.5,0,0.9,3.141592653589793
 1.3,0,1.2,3.141592653589793"
   for source in $material $build/gold.safetensors; do
-    echo "   pbnbrdf values --material=$source --directions=- --out=-"
-    echo "$pairs" | $pbnbrdf values --material=$source --directions=- --out=-
+    echo "   pbnbrdf eval --material=$source --directions=- --out=-"
+    echo "$pairs" | $pbnbrdf eval --material=$source --directions=- --out=-
   done
   cat <<TXT
 
 Next: fit a material of your own, a MERL file for instance,
   $pbnbrdf fit --material=gold.binary --out=gold.safetensors
-  $pbnbrdf eval --fit=gold.safetensors --material=gold.binary
+  $pbnbrdf measure --fit=gold.safetensors --material=gold.binary
 compare with the published set-up (problems/nbrdf.flags), list the built-in materials
   $pbnbrdf info builtin:
 or turn the fit into a MERL file that a renderer reads
-  $pbnbrdf tabulate --material=$build/gold.safetensors --out=gold.binary
+  $pbnbrdf export --fit=$build/gold.safetensors --format=merl --out=gold.binary
 TXT
 }
 
@@ -79,13 +86,15 @@ peers() {
 
 run_tests() {
   packages="$packages libegl-dev libgl1-mesa-dri libgles-dev"  # shaders run without a window
-  build_in "$build" -DPBNBRDF_WERROR=ON
+  build
   ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)"
 }
 
 # The tests under the address and undefined behaviour sanitizers, but those that run other programs.
 sanitize() {
-  build_in build-sanitize -DPBNBRDF_SANITIZE=ON -DPBNBRDF_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo
+  configure build-sanitize -DPBNBRDF_SANITIZE=ON -DPBNBRDF_BENCHMARKS=OFF \
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo
+  cmake --build build-sanitize --parallel "$(nproc)"
   ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" \
     --exclude-regex '^(package|interop_.*|GlslSource\..*)$'
 }
@@ -102,7 +111,7 @@ experiments() {
   name=$1
   shift
   command -v gnuplot > /dev/null || packages="$packages gnuplot-nox"
-  build_in "$build" --log-level=WARNING
+  build "$name"
   "$build/bin/$name" --out_dir="$build/results" "$@"
 }
 
@@ -110,8 +119,8 @@ case ${1:-} in
   demo) demo ;;
   test) run_tests ;;
   peers) peers ;;
-  build) build_in "$build" ;;
-  bench) build_in "$build" && "$build/bin/microbenchmarks" ;;
+  build) build ;;
+  bench) build microbenchmarks && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
   *)

@@ -9,15 +9,20 @@ if(PBNBRDF_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
-# pbnbrdf_module(NAME [MODULES module ...] [LIBS target ...] [PRIVATE_LIBS target ...])
+# pbnbrdf_module(NAME [COMPONENT component] [MODULES module ...] [LIBS target ...] [PRIVATE_LIBS target ...]
+#                [HEADERS target ...])
 #
 # The library pbnbrdf_NAME from src/NAME/*.cc and include/pbnbrdf/NAME/*.h. Each module's headers have an
 # include root of their own, so that including one of a module that isn't linked doesn't compile:
 #   "pbnbrdf/NAME/x.h"  public: for users, installed;
 #   "NAME/x.h"          internal: for the modules of this project that link NAME;
 #   "x.h"               for the module itself.
+# HEADERS are libraries of headers that only the module's own sources include. COMPONENT: core if not given.
 function(pbnbrdf_module name)
-  cmake_parse_arguments(M "" "" "MODULES;LIBS;PRIVATE_LIBS" ${ARGN})
+  cmake_parse_arguments(M "" "COMPONENT" "MODULES;LIBS;PRIVATE_LIBS;HEADERS" ${ARGN})
+  if(NOT M_COMPONENT)
+    set(M_COMPONENT core)
+  endif()
   set(root ${PROJECT_BINARY_DIR}/include_roots/${name})
   file(MAKE_DIRECTORY ${root}/pbnbrdf)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/include/pbnbrdf/${name} ${root}/pbnbrdf/${name} SYMBOLIC)
@@ -40,8 +45,22 @@ function(pbnbrdf_module name)
   if(M_PRIVATE_LIBS)
     target_link_libraries(pbnbrdf_${name} PRIVATE ${M_PRIVATE_LIBS})
   endif()
-  set_target_properties(pbnbrdf_${name} PROPERTIES EXPORT_NAME ${name})
-  set_property(GLOBAL APPEND PROPERTY PBNBRDF_MODULES pbnbrdf_${name})
+  foreach(headers ${M_HEADERS})
+    target_link_libraries(pbnbrdf_${name} PRIVATE $<BUILD_INTERFACE:${headers}>)
+  endforeach()
+  set_target_properties(pbnbrdf_${name} PROPERTIES EXPORT_NAME module_${name})
+  install(TARGETS pbnbrdf_${name} EXPORT pbnbrdf-${M_COMPONENT})
+endfunction()
+
+# pbnbrdf_component(NAME MODULE ...): what users link as pbnbrdf::NAME.
+function(pbnbrdf_component name)
+  list(TRANSFORM ARGN PREPEND pbnbrdf_)
+  add_library(pbnbrdf_component_${name} INTERFACE)
+  target_link_libraries(pbnbrdf_component_${name} INTERFACE ${ARGN})
+  set_target_properties(pbnbrdf_component_${name} PROPERTIES EXPORT_NAME ${name})
+  add_library(pbnbrdf::${name} ALIAS pbnbrdf_component_${name})
+  install(TARGETS pbnbrdf_component_${name} EXPORT pbnbrdf-${name})
+  set_property(GLOBAL APPEND PROPERTY PBNBRDF_COMPONENTS ${name})
 endfunction()
 
 # pbnbrdf_embed(TARGET FILE NAME): the text of FILE as the constant NAME, for TARGET's own sources, in a

@@ -1,26 +1,39 @@
 #!/bin/sh
-# Fails if a module includes a system library that is none of its business. layering.sh SOURCE_DIR
+# Fails if a module includes a system library that is none of its business, which its include roots can't
+# tell: system headers are visible to all. layering.sh SOURCE_DIR
 cd "$1" || exit 1
 status=0
-forbid() {  # forbid PATTERN FOLDER...
+
+# only PATTERN MODULE...: no other module, and no public header but those of the modules, includes it.
+only() {
   pattern=$1
   shift
-  if grep -rnE "#include [<\"]($pattern)" "$@"; then
-    echo "the lines above include what their module must not know"
+  others=$(ls src)
+  for module in "$@"; do others=$(echo "$others" | grep -vx "$module"); done
+  folders=$(for module in $others; do echo "src/$module include/pbnbrdf/$module"; done)
+  # shellcheck disable=SC2086
+  if grep -rnE "#include [<\"]($pattern)" $folders 2> /dev/null; then
+    echo "the lines above include what only $* may"
     status=1
   fi
 }
-forbid 'gflags|glog' include src/base src/export src/kernels src/brdf src/models src/network src/problem \
-  src/solve src/image src/metrics src/render
-forbid 'ceres|Eigen' include/pbnbrdf/base include/pbnbrdf/kernels include/pbnbrdf/brdf \
-  include/pbnbrdf/models include/pbnbrdf/network include/pbnbrdf/image include/pbnbrdf/metrics \
-  include/pbnbrdf/export include/pbnbrdf/render src/base src/kernels src/brdf src/network src/image \
-  src/metrics src/export src/render
-forbid 'nlohmann' include src/base src/export src/kernels src/models src/problem src/solve src/image src/metrics
-forbid 'hdf5|H5' include src/base src/export src/kernels src/brdf src/models src/problem src/solve src/image \
-  src/metrics src/cli src/render
-forbid 'Imf|OpenEXR|png\.h' include src/base src/export src/kernels src/brdf src/models src/network src/problem \
-  src/solve src/metrics src/cli src/render
-forbid 'embree' include src/base src/export src/kernels src/brdf src/models src/network src/problem src/solve \
-  src/image src/metrics src/cli
+only 'glog' cli
+only 'ceres|Eigen' models residuals problem solve
+only 'nlohmann' models network render cli
+only 'hdf5|H5' sources
+only 'Imf|OpenEXR|png\.h' image
+only 'embree' render
+only 'hwy' kernels
+only 'tbb' brdf models problem solve metrics render
+
+# Public headers that bring in Ceres are those about Ceres problems.
+if grep -rlE '#include [<"]ceres' include | grep -vE 'problem/ceres_problem.h|residuals/'; then
+  echo "the headers above bring in Ceres"
+  status=1
+fi
+# Public headers include public headers only.
+if grep -rnE '#include "' include | grep -v '"pbnbrdf/'; then
+  echo "the lines above include an internal header"
+  status=1
+fi
 exit $status

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "brdf/point_tree.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/half_diff.h"
 
@@ -66,7 +67,7 @@ double ShepardWeight(double squared, double nearest, double farthest) {
 
 }  // namespace
 
-PointTree::Point ScatteredPlace(const DirectionPair& pair, bool isotropic) {
+std::array<double, 4> ScatteredPlace(const DirectionPair& pair, bool isotropic) {
   const auto [h, d] = ToHalfDiff(pair);
   const double sin_h = std::hypot(h.x, h.y), sin_d = std::hypot(d.x, d.y);
   const double r = std::sqrt(2.0 * std::atan2(sin_h, h.z) / std::numbers::pi);
@@ -87,12 +88,13 @@ PointTree::Point ScatteredPlace(const DirectionPair& pair, bool isotropic) {
 }
 
 ScatteredBrdf::ScatteredBrdf(ScatteredData data)
-    : data_(Usable(std::move(data))), tree_(PlacesOf(data_, &samples_)) {}
+    : data_(Usable(std::move(data))),
+      tree_(std::make_shared<PointTree>(PlacesOf(data_, &samples_))) {}
 
 void ScatteredBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                       std::span<Rgb> values) const {
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const auto near = tree_.Nearest(ScatteredPlace(pairs[n], data_.isotropic), kNeighbors + 1);
+    const auto near = tree_->Nearest(ScatteredPlace(pairs[n], data_.isotropic), kNeighbors + 1);
     const double nearest = near.front().squared_distance, farthest = near.back().squared_distance;
     Rgb sum = {};
     double total = 0.0;
@@ -109,7 +111,7 @@ void ScatteredBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
 
 bool ScatteredBrdf::IsKnown(const DirectionPair& pair) const {
   if (!pair.AboveHorizon()) return false;
-  const auto near = tree_.Nearest(ScatteredPlace(pair, data_.isotropic), 1);
+  const auto near = tree_->Nearest(ScatteredPlace(pair, data_.isotropic), 1);
   return near.front().squared_distance <= kReach * kReach;
 }
 

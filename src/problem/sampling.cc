@@ -52,7 +52,7 @@ std::uint64_t Mix(std::uint64_t x) {
 // The same for all measurements at one place, but for rounding.
 std::uint64_t PlaceHash(const DirectionPair& pair, bool isotropic) {
   std::uint64_t hash = 0;
-  PointTree::Point place = ScatteredPlace(pair, isotropic);
+  std::array<double, 4> place = ScatteredPlace(pair, isotropic);
   if (isotropic) place[3] = std::abs(place[3]);
   for (double x : place) {
     hash = Mix(hash + static_cast<std::uint64_t>(std::llround(x * kPlacesPerUnit)) + 1);

@@ -16,18 +16,18 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 class CondensedTest : public testing::TestWithParam<Activation> {
  protected:
   CondensedTest() {
-    problem_.hidden = {5, 4};
-    problem_.activation = GetParam();
-    problem_.samples = 200;
-    problem_.precision = Precision::kDouble;
-    problem_.chromaticity_weight = 0.2;
-    problem_.energy_strata = 4;
-    problem_.energy_theta = 8;
-    problem_.energy_phi = 6;
-    problem_.loss_scale = 0.1;
-    samples_ = DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem_.sampling,
-                           problem_.samples, problem_.seed);
-    objective_ = MakeObjective(problem_, samples_);
+    problem_.network.hidden = {5, 4};
+    problem_.network.activation = GetParam();
+    problem_.sampling.samples = 200;
+    problem_.terms.SetWeight("chromaticity", 0.2);
+    problem_.terms.energy_strata = 4;
+    problem_.terms.energy_theta = 8;
+    problem_.terms.energy_phi = 6;
+    problem_.terms.loss_scale = 0.1;
+    samples_ =
+        DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem_.sampling.angles,
+                    problem_.sampling.samples, problem_.sampling.seed);
+    objective_ = MakeObjective(problem_, Precision::kDouble, samples_);
     weights_ = RandomWeights(problem_.Shape(), 0.8, /*seed=*/2);
   }
 

@@ -18,10 +18,16 @@ std::vector<double> Lambertian(const NetworkShape& shape, double albedo) {
 
 FitProblem SmallProblem() {
   FitProblem problem;
-  problem.hidden = {3};
-  problem.precision = Precision::kDouble;
-  problem.energy_strata = 4;
+  problem.network.hidden = {3};
+  problem.terms.energy_strata = 4;
   return problem;
+}
+
+// With the problem's weight and equal strata.
+EnergyTerm<double> TermOf(const FitProblem& problem) {
+  EnergyTerm<double> term(problem);
+  term.Set(problem.terms.EnergyWeight(), EqualStrata(problem));
+  return term;
 }
 
 Linearization LinearizeAt(const std::vector<double>& weights, EnergyTerm<double>* term) {
@@ -34,8 +40,8 @@ Linearization LinearizeAt(const std::vector<double>& weights, EnergyTerm<double>
 
 TEST(EnergyTerm, OfALambertianIsTheExcessOverTheHemisphere) {
   FitProblem problem = SmallProblem();
-  problem.energy_weight = 3.0;
-  EnergyTerm<double> term(problem, EqualStrata(problem));
+  problem.terms.SetWeight("energy", 3.0);
+  EnergyTerm<double> term = TermOf(problem);
   const auto cost_at = [&](double albedo) {
     return term.Cost(Lambertian(problem.Shape(), albedo).data());
   };
@@ -48,7 +54,8 @@ TEST(EnergyTerm, ALowerLimitMakesAnAlbedoBelow1Cost) {
   const FitProblem problem = SmallProblem();
   std::vector<EnergyStratum> strata = EqualStrata(problem);
   strata[2].limit = {0.9, 1.0, 1.0};
-  EnergyTerm<double> term(problem, strata);
+  EnergyTerm<double> term(problem);
+  term.Set(1.0, strata);
   const std::vector<double> weights = Lambertian(problem.Shape(), 0.95);
   EXPECT_NEAR(term.Cost(weights.data()), 0.5 * 2.0 * kPi / 4.0 * 0.05 * 0.05, 2e-4);
   const Linearization at = LinearizeAt(weights, &term);
@@ -59,7 +66,7 @@ TEST(EnergyTerm, ALowerLimitMakesAnAlbedoBelow1Cost) {
 
 TEST(EnergyTerm, GradientIsThatOfTheCost) {
   const FitProblem problem = SmallProblem();
-  EnergyTerm<double> term(problem, EqualStrata(problem));
+  EnergyTerm<double> term = TermOf(problem);
   std::vector<double> weights = RandomWeights(problem.Shape(), 0.5, /*seed=*/4);
   for (int c = 1; c <= 3; ++c) weights[weights.size() - 4 * c + 3] += 1.0;  // bright
   const Linearization at = LinearizeAt(weights, &term);
@@ -77,7 +84,7 @@ TEST(EnergyTerm, GradientIsThatOfTheCost) {
 
 TEST(EnergyTerm, LooksAgainAtStrataThatWereFarBelow1) {
   const FitProblem problem = SmallProblem();
-  EnergyTerm<double> term(problem, EqualStrata(problem));
+  EnergyTerm<double> term = TermOf(problem);
   const std::vector<double> dark = Lambertian(problem.Shape(), 0.5);
   const std::vector<double> bright = Lambertian(problem.Shape(), 1.5);
   EXPECT_GT(term.Cost(bright.data()), 0.0);  // nothing is known to be far below yet
@@ -94,17 +101,40 @@ TEST(EnergyTerm, LooksAgainAtStrataThatWereFarBelow1) {
 
 TEST(EnergyTerm, WithoutSkippingAllStrataAreAlwaysSeen) {
   FitProblem problem = SmallProblem();
-  problem.energy_skip = false;
-  EnergyTerm<double> term(problem, EqualStrata(problem));
+  problem.terms.energy_skip = false;
+  EnergyTerm<double> term = TermOf(problem);
   LinearizeAt(Lambertian(problem.Shape(), 0.5), &term);
   EXPECT_GT(term.Cost(Lambertian(problem.Shape(), 1.5).data()), 0.0);
   EXPECT_EQ(term.work().albedos_skipped, 0);
 }
 
+TEST(EnergyTerm, KeepsTheNodesOfStrataThatStayAndStartsAfreshAsToWhatIsFarBelow1) {
+  const FitProblem problem = SmallProblem();
+  EnergyTerm<double> term = TermOf(problem);
+  const std::vector<double> bright = Lambertian(problem.Shape(), 1.5);
+  const double cost = term.Cost(bright.data());
+  LinearizeAt(Lambertian(problem.Shape(), 0.5), &term);
+  EXPECT_EQ(term.Cost(bright.data()), 0.0);
+  std::vector<EnergyStratum> strata = EqualStrata(problem);
+  term.Set(1.0, strata);
+  EXPECT_EQ(term.Cost(bright.data()), cost);
+  // A term that was never set to anything else has the same cost, whatever stood in a stratum's place.
+  strata.pop_back();
+  strata[1].wi = FromSpherical(0.3, 0.0);
+  strata.push_back({FromSpherical(0.8, 0.0), 0.5});
+  term.Set(2.0, strata);
+  EnergyTerm<double> afresh(problem);
+  afresh.Set(2.0, strata);
+  EXPECT_EQ(term.Cost(bright.data()), afresh.Cost(bright.data()));
+  EXPECT_NE(term.Cost(bright.data()), 2.0 * cost);
+  term.Set(0.0, {});
+  EXPECT_EQ(term.Cost(bright.data()), 0.0);
+}
+
 TEST(EqualStrata, ShareTheHemisphere) {
   FitProblem problem;
   for (Encoding encoding : {Encoding::kMerl, Encoding::kAnisotropic}) {
-    problem.encoding = encoding;
+    problem.network.encoding = encoding;
     const auto strata = EqualStrata(problem);
     EXPECT_EQ(strata.size(), encoding == Encoding::kMerl ? 16u : 16u * 8u);
     double solid_angle = 0.0;

@@ -3,6 +3,8 @@
 #include <ceres/loss_function.h>
 
 #include "pbnbrdf/models/builtin.h"
+#include "problem/initial_weights.h"
+#include "problem/robust_loss.h"
 #include "test_util.h"
 
 namespace pbnbrdf {
@@ -17,22 +19,48 @@ TEST(FitProblem, ErrorsNameFieldValueAndBound) {
     return ErrorOf([&] { problem.Validate(); });
   };
   EXPECT_EQ(error([](FitProblem*) {}), "");
-  EXPECT_THAT(error([](FitProblem* p) { p->log_weight = -1; }),
-              HasSubstr("log_weight = -1; must be finite and >= 0"));
-  EXPECT_THAT(error([](FitProblem* p) { p->energy_weight = std::nan(""); }),
-              HasSubstr("energy_weight = nan"));
-  EXPECT_THAT(error([](FitProblem* p) { p->log_weight = 0; }), HasSubstr("terms: "));
-  EXPECT_THAT(error([](FitProblem* p) { p->loss_scale = 0; }), HasSubstr("must be finite and > 0"));
-  EXPECT_THAT(error([](FitProblem* p) { p->samples = 0; }), HasSubstr("samples = 0; must be 1 to"));
-  EXPECT_THAT(error([](FitProblem* p) { p->hidden = {}; }), HasSubstr("hidden: 0 layers"));
-  EXPECT_THAT(error([](FitProblem* p) { p->hidden = {21, 0}; }), HasSubstr("a layer of 0 units"));
-  EXPECT_THAT(error([](FitProblem* p) { p->energy_theta = -1; }), HasSubstr("energy_theta"));
+  EXPECT_THAT(error([](FitProblem* p) { p->terms.SetWeight("log", -1); }),
+              HasSubstr("terms: the weight of log = -1; must be finite and > 0"));
+  EXPECT_THAT(error([](FitProblem* p) { p->terms.SetWeight("energy", std::nan("")); }),
+              HasSubstr("terms: the weight of energy = nan"));
+  EXPECT_THAT(error([](FitProblem* p) { p->terms.SetWeight("log", 0); }), HasSubstr("terms: "));
+  EXPECT_THAT(error([](FitProblem* p) { p->terms.loss_scale = 0; }),
+              HasSubstr("must be finite and > 0"));
+  EXPECT_THAT(error([](FitProblem* p) { p->sampling.samples = 0; }),
+              HasSubstr("samples = 0; must be 1 to"));
+  EXPECT_THAT(error([](FitProblem* p) { p->network.hidden = {}; }), HasSubstr("hidden: 0 layers"));
+  EXPECT_THAT(error([](FitProblem* p) {
+                p->network.hidden = {21, 0};
+              }),
+              HasSubstr("hidden = 0; must be 1 to 256"));
+  EXPECT_THAT(error([](FitProblem* p) { p->terms.energy_theta = -1; }), HasSubstr("energy_theta"));
+}
+
+TEST(FitProblem, ATermIsThereOnceAndKnown) {
+  FitProblem problem;
+  problem.terms.weights = {{"log", 1.0}, {"log", 2.0}};
+  EXPECT_THAT(ErrorOf([&] { problem.Validate(); }), HasSubstr("terms: log is there twice"));
+  problem.terms.weights = {{"logs", 1.0}};
+  EXPECT_THAT(ErrorOf([&] { problem.Validate(); }),
+              HasSubstr("terms=logs is not one of log | chromaticity | energy"));
+}
+
+TEST(FitProblem, IsSettledForAMaterial) {
+  const FitProblem problem;
+  const FitProblem brass = problem.For(*MakeBuiltin("rolled-brass"));
+  EXPECT_EQ(brass.network.encoding, Encoding::kAnisotropic);
+  EXPECT_EQ(brass.network.channels, 3);
+  EXPECT_EQ(problem.For(*MakeBuiltin("satin-gold")).network.encoding, Encoding::kMerl);
+  EXPECT_EQ(problem.Shape().Description(), "6-21-21-3 tanh");
 }
 
 TEST(Loss, EachIsConcaveWithRhoOfZeroZero) {
   // What the condensed block needs for its square root to be real.
   for (const auto& [name, loss] : kLosses) {
-    const auto rho = MakeLoss(loss, 0.1);
+    TermOptions terms;
+    terms.loss = loss;
+    terms.loss_scale = 0.1;
+    const auto rho = MakeLoss(terms);
     if (loss == Loss::kL2 || loss == Loss::kAbsolute) {
       EXPECT_EQ(rho, nullptr);
       continue;

@@ -16,19 +16,18 @@ constexpr int kBatch = kernels::kBatch;
 
 FitProblem SmallProblem(double log_weight, double chromaticity_weight) {
   FitProblem problem;
-  problem.hidden = {5, 4};
-  problem.samples = 200;  // a full block and a part of one
-  problem.log_weight = log_weight;
-  problem.chromaticity_weight = chromaticity_weight;
-  problem.energy_weight = 0.0;
-  problem.loss = Loss::kAbsolute;
-  problem.precision = Precision::kDouble;
+  problem.network.hidden = {5, 4};
+  problem.sampling.samples = 200;  // a full block and a part of one
+  problem.terms.SetWeight("log", log_weight);
+  problem.terms.SetWeight("chromaticity", chromaticity_weight);
+  problem.terms.SetWeight("energy", 0.0);
+  problem.terms.loss = Loss::kAbsolute;
   return problem;
 }
 
 std::vector<BrdfSample> Samples(const FitProblem& problem) {
   return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, Sampling::kUniform,
-                     problem.samples, /*seed=*/1);
+                     problem.sampling.samples, /*seed=*/1);
 }
 
 std::vector<float> Gradient(const FitProblem& problem, const Minibatches& minibatches,
@@ -45,16 +44,18 @@ class MinibatchGradientTest
 TEST_P(MinibatchGradientTest, IsThatOfTheObjective) {
   const auto [log_weight, chromaticity_weight, activation] = GetParam();
   FitProblem problem = SmallProblem(log_weight, chromaticity_weight);
-  problem.activation = activation;
+  problem.network.activation = activation;
   const auto samples = Samples(problem);
   const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/2);
-  MinibatchStream stream(problem, samples, samples.size(), /*energy_angles=*/1);
+  const EncodedSamples encoded(problem.Shape().encoding(), samples);
+  MinibatchStream stream(problem, encoded, samples.size(), /*energy_angles=*/1);
   Minibatches run;
   stream.Draw(&run);
   const std::vector<float> gradient = Gradient(problem, run, 0, weights);
   double cost;
   std::vector<double> expected(weights.size());
-  ASSERT_TRUE(MakeObjective(problem, samples)->Gradient(weights.data(), &cost, expected.data()));
+  ASSERT_TRUE(MakeObjective(problem, Precision::kDouble, samples)
+                  ->Gradient(weights.data(), &cost, expected.data()));
   for (std::size_t i = 0; i < weights.size(); ++i) {
     EXPECT_NEAR(gradient[i], expected[i], 2e-5) << "weight " << i;
   }
@@ -89,11 +90,12 @@ double EnergyLoss(const FitProblem& problem, std::span<const Minibatches::Albedo
 
 TEST(MinibatchGradient, EnergyTermIsThatOfEquation5) {
   FitProblem problem = SmallProblem(1.0, 0.0);
-  problem.energy_theta = 16;
-  problem.energy_phi = 12;
-  MinibatchStream without(problem, Samples(problem), /*batch=*/50, /*energy_angles=*/3);
-  problem.energy_weight = 2.0;
-  MinibatchStream with(problem, Samples(problem), /*batch=*/50, /*energy_angles=*/3);
+  problem.terms.energy_theta = 16;
+  problem.terms.energy_phi = 12;
+  const EncodedSamples samples(problem.Shape().encoding(), Samples(problem));
+  MinibatchStream without(problem, samples, /*batch=*/50, /*energy_angles=*/3);
+  problem.terms.SetWeight("energy", 2.0);
+  MinibatchStream with(problem, samples, /*batch=*/50, /*energy_angles=*/3);
   Minibatches run_without, run;
   without.Draw(&run_without);
   with.Draw(&run);
@@ -104,7 +106,7 @@ TEST(MinibatchGradient, EnergyTermIsThatOfEquation5) {
     weights[problem.Shape().offset(2) + 5 * channel + 4] = bias;
   }
   const auto all = Gradient(problem, run, 1, weights);
-  problem.energy_weight = 0.0;
+  problem.terms.SetWeight("energy", 0.0);
   const auto rest = Gradient(problem, run_without, 1, weights);
   double largest = 0.0;
   constexpr double kStep = 1e-6;

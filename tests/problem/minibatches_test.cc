@@ -14,14 +14,18 @@ constexpr int kBatch = kernels::kBatch;
 
 FitProblem SmallProblem(std::size_t samples) {
   FitProblem problem;
-  problem.samples = samples;
-  problem.energy_weight = 0.0;
+  problem.sampling.samples = samples;
+  problem.terms.SetWeight("energy", 0.0);
   return problem;
 }
 
 std::vector<BrdfSample> Samples(const FitProblem& problem) {
-  return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling,
-                     problem.samples, problem.seed);
+  return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling.angles,
+                     problem.sampling.samples, problem.sampling.seed);
+}
+
+EncodedSamples Encoded(const FitProblem& problem, const std::vector<BrdfSample>& samples) {
+  return EncodedSamples(problem.Shape().encoding(), samples);
 }
 
 // The red values of all samples of an epoch, in order.
@@ -43,7 +47,7 @@ std::vector<float> RedOfEpoch(MinibatchStream* stream) {
 TEST(MinibatchStream, AnEpochHasEachSampleOnceInAnotherOrder) {
   const FitProblem problem = SmallProblem(70000);  // more than are drawn at once
   const std::vector<BrdfSample> samples = Samples(problem);
-  MinibatchStream stream(problem, samples, /*batch=*/700, /*energy_angles=*/1);
+  MinibatchStream stream(problem, Encoded(problem, samples), /*batch=*/700, /*energy_angles=*/1);
   std::vector<float> first = RedOfEpoch(&stream), second = RedOfEpoch(&stream);
   EXPECT_NE(first, second);
   std::vector<float> all;
@@ -55,20 +59,21 @@ TEST(MinibatchStream, AnEpochHasEachSampleOnceInAnotherOrder) {
 
 TEST(MinibatchStream, LeavesOutTheRest) {
   const FitProblem problem = SmallProblem(1000);
-  MinibatchStream stream(problem, Samples(problem), /*batch=*/300, /*energy_angles=*/1);
+  MinibatchStream stream(problem, Encoded(problem, Samples(problem)), /*batch=*/300,
+                         /*energy_angles=*/1);
   EXPECT_EQ(RedOfEpoch(&stream).size(), 900u);
 }
 
 TEST(MinibatchStream, RowsAreThoseOfTheSamples) {
   const FitProblem problem = SmallProblem(1);
   const std::vector<BrdfSample> samples = Samples(problem);
-  MinibatchStream stream(problem, samples, /*batch=*/1, /*energy_angles=*/1);
+  MinibatchStream stream(problem, Encoded(problem, samples), /*batch=*/1, /*energy_angles=*/1);
   Minibatches run;
   stream.Draw(&run);
   EXPECT_TRUE(run.ends_epoch);
   EXPECT_TRUE(run.AlbedosOf(0).empty());
   const float* block = run.SampleBlock(0, 0);
-  const auto input = Encode(problem.encoding, samples[0].pair);
+  const auto input = Encode(problem.Shape().encoding(), samples[0].pair);
   for (int i = 0; i < kEncodedSize; ++i) EXPECT_EQ(block[i * kBatch], float(input[i]));
   EXPECT_EQ(block[Minibatches::kCos * kBatch], float(CosI(samples[0].pair)));
   for (int c = 0; c < 3; ++c) {
@@ -80,10 +85,11 @@ TEST(MinibatchStream, RowsAreThoseOfTheSamples) {
 TEST(MinibatchStream, NodesIntegrateTheCosine) {
   // The albedo of f = 1/pi is 1 at every angle; near grazing the grid of half vectors is coarse.
   FitProblem problem = SmallProblem(10);
-  problem.energy_weight = 1.0;
-  problem.energy_theta = 64;
-  problem.energy_phi = 32;
-  MinibatchStream stream(problem, Samples(problem), /*batch=*/2, /*energy_angles=*/3);
+  problem.terms.SetWeight("energy", 1.0);
+  problem.terms.energy_theta = 64;
+  problem.terms.energy_phi = 32;
+  MinibatchStream stream(problem, Encoded(problem, Samples(problem)), /*batch=*/2,
+                         /*energy_angles=*/3);
   Minibatches run;
   stream.Draw(&run);
   ASSERT_EQ(run.count, 5u);

@@ -18,6 +18,7 @@
 #include "pbnbrdf/residuals/energy_residual.h"
 #include "pbnbrdf/residuals/log_residual.h"
 #include "pbnbrdf/residuals/network_residual.h"
+#include "problem/encoded_samples.h"
 
 namespace pbnbrdf {
 namespace {
@@ -31,19 +32,19 @@ struct Case {
 };
 
 std::vector<BrdfSample> Samples(const FitProblem& problem) {
-  return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling,
-                     problem.samples, problem.seed);
+  return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling.angles,
+                     problem.sampling.samples, problem.sampling.seed);
 }
 
 FitProblem SmallProblem() {
   FitProblem problem;
-  problem.hidden = {5, 4};
-  problem.samples = 150;  // a full batch and a part of one
-  problem.energy_weight = 0.0;
-  problem.energy_strata = 4;
-  problem.energy_theta = 8;
-  problem.energy_phi = 6;
-  problem.loss = Loss::kL2;
+  problem.network.hidden = {5, 4};
+  problem.sampling.samples = 150;  // a full batch and a part of one
+  problem.terms.SetWeight("energy", 0.0);
+  problem.terms.energy_strata = 4;
+  problem.terms.energy_theta = 8;
+  problem.terms.energy_phi = 6;
+  problem.terms.loss = Loss::kL2;
   return problem;
 }
 
@@ -72,36 +73,34 @@ std::vector<Case> Cases() {
   std::vector<Case> cases;
   FitProblem problem = SmallProblem();
   cases.push_back(MakeCase("Log", problem));
-  problem.activation = Activation::kRelu;
+  problem.network.activation = Activation::kRelu;
   cases.push_back(MakeCase("Relu", problem));
   cases.push_back(MakeCase("DeadUnitsRelu", problem, 0.5, KillUnits));
-  problem.activation = Activation::kTanh;
+  problem.network.activation = Activation::kTanh;
   cases.push_back(MakeCase("DeadUnitsTanh", problem, 0.5, KillUnits));
-  problem.chromaticity_weight = 0.3;
+  problem.terms.SetWeight("chromaticity", 0.3);
   cases.push_back(MakeCase("LogAndChromaticity", problem));
-  problem.log_weight = 0.0;
+  problem.terms.SetWeight("log", 0.0);
   cases.push_back(MakeCase("Chromaticity", problem));
   problem = SmallProblem();
-  problem.energy_weight = 2.0;
+  problem.terms.SetWeight("energy", 2.0);
   cases.push_back(MakeCase("Energy", problem));
   // Channel values around 0: some outputs are clamped in the energy term, others not.
   cases.push_back(MakeCase("ClampedOutputs", problem, -0.1));
-  problem.chromaticity_weight = 0.3;
+  problem.terms.SetWeight("chromaticity", 0.3);
   cases.push_back(MakeCase("AllTerms", problem));
-  for (Loss loss : {Loss::kSoftL1, Loss::kHuber, Loss::kCauchy}) {
-    problem.loss = loss;
-    problem.loss_scale = 0.1;
-    cases.push_back(MakeCase(StrCat("AllTerms_", NameOf(kLosses, loss)), problem));
-  }
-  problem.channels = 1;
+  problem.terms.loss = Loss::kSoftL1;
+  problem.terms.loss_scale = 0.1;
+  cases.push_back(MakeCase("AllTermsSoftL1", problem));
+  problem.network.channels = 1;
   cases.push_back(MakeCase("OneOutput", problem));
-  problem.channels = 3;
-  problem.encoding = Encoding::kReciprocal;
+  problem.network.channels = 3;
+  problem.network.encoding = Encoding::kReciprocal;
   cases.push_back(MakeCase("Reciprocal", problem));
-  problem.hidden = {21, 21};
-  problem.samples = 40;
+  problem.network.hidden = {21, 21};
+  problem.sampling.samples = 40;
   cases.push_back(MakeCase("Published675Weights", problem));
-  problem.hidden = {3, 9, 5};
+  problem.network.hidden = {3, 9, 5};
   cases.push_back(MakeCase("ThreeHiddenLayers", problem));
   return cases;
 }
@@ -155,9 +154,8 @@ Deviation Compare(const Linearization& a, const Linearization& b) {
 class ObjectiveTest : public testing::TestWithParam<Case> {
  protected:
   static Linearization Fast(Precision precision, int threads = 2) {
-    FitProblem problem = GetParam().problem;
-    problem.precision = precision;
-    const auto objective = MakeObjective(problem, Samples(problem));
+    const FitProblem& problem = GetParam().problem;
+    const auto objective = MakeObjective(problem, precision, Samples(problem));
     Linearization at;
     tbb::task_arena arena(threads);
     EXPECT_TRUE(
@@ -189,9 +187,8 @@ TEST_P(ObjectiveTest, SameBitsForOneAndTwoThreads) {
 }
 
 TEST_P(ObjectiveTest, GradientAloneIsTheSame) {
-  FitProblem problem = GetParam().problem;
-  problem.precision = Precision::kDouble;
-  const auto objective = MakeObjective(problem, Samples(problem));
+  const FitProblem& problem = GetParam().problem;
+  const auto objective = MakeObjective(problem, Precision::kDouble, Samples(problem));
   const double* weights = GetParam().weights.data();
   Linearization at;
   ASSERT_TRUE(objective->Linearize(weights, &at));
@@ -206,8 +203,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, ObjectiveTest, testing::ValuesIn(Cases()),
 
 TEST(Objective, ManySamplesGiveTheSameBitsForOneAndTwoThreads) {
   FitProblem problem = SmallProblem();
-  problem.samples = 5000;
-  const auto objective = MakeObjective(problem, Samples(problem));
+  problem.sampling.samples = 5000;
+  const auto objective = MakeObjective(problem, Precision::kSingle, Samples(problem));
   const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/3);
   Linearization at[2];
   for (int threads : {1, 2}) {
@@ -221,7 +218,7 @@ TEST(Objective, ManySamplesGiveTheSameBitsForOneAndTwoThreads) {
 
 TEST(Objective, SaysWhenItIsNotFinite) {
   const FitProblem problem = SmallProblem();
-  const auto objective = MakeObjective(problem, Samples(problem));
+  const auto objective = MakeObjective(problem, Precision::kSingle, Samples(problem));
   std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/3);
   weights.back() = 1e4;  // expm1(1e4) is infinite
   Linearization at;
@@ -244,12 +241,13 @@ double AbsoluteLoss(const FitProblem& problem, const std::vector<double>& weight
   double loss = 0.0;
   for (const BrdfSample& s : Samples(problem)) {
     const double cos_i = CosI(s.pair);
-    loss += problem.log_weight / 3.0 * sum_of(LogResidual(s.value, cos_i), {s.pair});
-    loss += problem.chromaticity_weight * sum_of(ChromaticityResidual(s.value, cos_i), {s.pair});
+    loss += problem.terms.Weight("log") / 3.0 * sum_of(LogResidual(s.value, cos_i), {s.pair});
+    loss += problem.terms.Weight("chromaticity") *
+            sum_of(ChromaticityResidual(s.value, cos_i), {s.pair});
   }
-  loss /= static_cast<double>(problem.samples);
+  loss /= static_cast<double>(problem.sampling.samples);
   const std::vector<EnergyStratum> strata = EqualStrata(problem);
-  for (std::size_t k = 0; k < strata.size() && problem.energy_weight > 0.0; ++k) {
+  for (std::size_t k = 0; k < strata.size() && problem.terms.Weight("energy") > 0.0; ++k) {
     std::vector<DirectionPair> pairs;
     std::vector<double> node_weights;
     for (const AlbedoNode& node : QuadratureOfStratum(problem, k).Nodes(strata[k].wi)) {
@@ -257,7 +255,7 @@ double AbsoluteLoss(const FitProblem& problem, const std::vector<double>& weight
       node_weights.push_back(node.weight);
     }
     // The residual carries the square root of its solid angle.
-    loss += problem.energy_weight * strata[k].solid_angle / 3.0 *
+    loss += problem.terms.Weight("energy") * strata[k].solid_angle / 3.0 *
             sum_of(EnergyResidual(/*solid_angle=*/1.0, node_weights), pairs);
   }
   return loss;
@@ -265,9 +263,8 @@ double AbsoluteLoss(const FitProblem& problem, const std::vector<double>& weight
 
 TEST_P(ObjectiveTest, AbsoluteLossIsThePapersSumAndItsGradient) {
   FitProblem problem = GetParam().problem;
-  problem.loss = Loss::kAbsolute;
-  problem.precision = Precision::kDouble;
-  const auto objective = MakeObjective(problem, Samples(problem));
+  problem.terms.loss = Loss::kAbsolute;
+  const auto objective = MakeObjective(problem, Precision::kDouble, Samples(problem));
   std::vector<double> weights = GetParam().weights;
   double cost;
   std::vector<double> gradient(weights.size());
@@ -308,15 +305,14 @@ TEST(Objective, MeanAbsLogErrorIsThatOfEquation6) {
       sum += std::abs(std::log1p(s.value[c] * s.pair.wi.z) - std::log1p(f * s.pair.wi.z));
     }
   }
-  EXPECT_NEAR(MakeObjective(problem, samples)->MeanAbsLogError(weights.data()),
+  EXPECT_NEAR(MakeObjective(problem, Precision::kSingle, samples)->MeanAbsLogError(weights.data()),
               sum / (3.0 * static_cast<double>(samples.size())), 1e-6);
 }
 
 TEST(Objective, CurvatureOfPartsAddsUpToThatOfAll) {
   FitProblem problem = SmallProblem();
-  problem.samples = 1000;  // 8 batches, the last one not full
-  problem.precision = Precision::kDouble;
-  const auto objective = MakeObjective(problem, Samples(problem));
+  problem.sampling.samples = 1000;  // 8 batches, the last one not full
+  const auto objective = MakeObjective(problem, Precision::kDouble, Samples(problem));
   const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/11);
   Linearization all;
   ASSERT_TRUE(objective->Linearize(weights.data(), &all));
@@ -337,9 +333,30 @@ TEST(Objective, CurvatureOfPartsAddsUpToThatOfAll) {
   for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], all.hessian[i], 1e-12);
 }
 
+TEST(Objective, GrownIsTheSameToTheBitAsMadeOfAll) {
+  FitProblem problem = SmallProblem();
+  problem.sampling.samples = 1000;
+  problem.terms.SetWeight("chromaticity", 0.3);
+  const EncodedSamples samples(problem.Shape().encoding(), Samples(problem));
+  const auto all = MakeObjective(problem, Precision::kSingle, samples, 1000);
+  const auto grown = MakeObjective(problem, Precision::kSingle, samples, 100);
+  EXPECT_EQ(grown->num_samples(), 100u);
+  const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/11);
+  EXPECT_NE(grown->Cost(weights.data()), all->Cost(weights.data()));
+  grown->Grow(300);
+  grown->Grow(1000);
+  Linearization of_all, of_grown;
+  ASSERT_TRUE(all->Linearize(weights.data(), &of_all));
+  ASSERT_TRUE(grown->Linearize(weights.data(), &of_grown));
+  EXPECT_EQ(of_grown.cost, of_all.cost);
+  EXPECT_EQ(of_grown.gradient, of_all.gradient);
+  EXPECT_EQ(of_grown.hessian, of_all.hessian);
+  EXPECT_EQ(grown->MeanAbsLogError(weights.data()), all->MeanAbsLogError(weights.data()));
+}
+
 TEST(Objective, MorePartsThanBatchesAreOneBatchEach) {
   const FitProblem problem = SmallProblem();
-  const auto objective = MakeObjective(problem, Samples(problem));
+  const auto objective = MakeObjective(problem, Precision::kSingle, Samples(problem));
   const std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/11);
   Linearization two, many;
   ASSERT_TRUE(objective->Linearize(weights.data(), {.index = 1, .count = 2}, &two));

@@ -13,8 +13,8 @@ TEST(FitStart, TheBestStartGoesOn) {
   const FitProblem problem = SmallProblem();
   double least = std::numeric_limits<double>::infinity();
   FitOptions options;
-  options.starts = 4;
-  options.max_iterations = 12;  // of each start, and none is left after them
+  options.schedule.starts = 4;
+  options.schedule.max_iterations = 12;  // of each start, and none is left after them
   options.on_iteration = [&](const FitProgress& progress) {
     least = std::min(least, progress.cost);
     return true;
@@ -27,12 +27,12 @@ TEST(FitStart, TheBestStartGoesOn) {
 TEST(FitStart, GoesOnFromGivenWeights) {
   const auto gold = MakeBuiltin("satin-gold");
   FitOptions options;
-  options.max_iterations = 20;
+  options.schedule.max_iterations = 20;
   const Fit first = FitBrdf(*gold, SmallProblem(), options);
   options.initial_weights = first.network.weights();
-  options.max_iterations = 0;
+  options.schedule.max_iterations = 0;
   EXPECT_EQ(FitBrdf(*gold, SmallProblem(), options).network.weights(), first.network.weights());
-  options.max_iterations = 20;
+  options.schedule.max_iterations = 20;
   const Fit second = FitBrdf(*gold, SmallProblem(), options);
   EXPECT_LT(second.summary.final_cost, first.summary.final_cost);
 }
@@ -52,7 +52,7 @@ TEST(FitStart, RefusesGivenWeightsThatLeadNowhere) {
     return ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
   };
   for (Activation activation : {Activation::kTanh, Activation::kRelu}) {
-    problem.activation = activation;
+    problem.network.activation = activation;
     const NetworkShape shape = problem.Shape();
     EXPECT_THAT(error(DeadWeights(shape)), HasSubstr("a constant network that stays one"));
     EXPECT_THAT(error(std::vector<double>(shape.num_weights(), 0.0)),
@@ -68,14 +68,14 @@ TEST(FitStart, RefusesGivenWeightsThatLeadNowhere) {
 TEST(FitStart, SaysWhyWhereTheFirstStageCantStart) {
   // The cost and its gradient are finite, J'J isn't in single precision.
   FitProblem problem = SmallProblem();
-  problem.loss = Loss::kL2;
-  problem.log_weight = 2e39;
+  problem.terms.loss = Loss::kL2;
+  problem.terms.SetWeight("log", 2e39);
   FitOptions options;
-  for (Solver solver : {Solver::kTinyLm, Solver::kLm}) {
+  for (const std::string solver : {"lm", "ceres_lm"}) {
     options.solver = solver;
     const std::string error =
         ErrorOf([&] { FitBrdf(*MakeBuiltin("satin-gold"), problem, options); });
-    EXPECT_THAT(error, HasSubstr("no start: ")) << NameOf(kSolvers, solver);
+    EXPECT_THAT(error, HasSubstr("no start: ")) << solver;
     EXPECT_THAT(error, testing::Not(HasSubstr("random"))) << "not of the gradient";
   }
 }
@@ -84,21 +84,21 @@ TEST(FitStart, AConstantNetworkIsAStartForAConstantMaterial) {
   const FitProblem problem = SmallProblem();
   FitOptions options;
   options.initial_weights = DeadWeights(problem.Shape());
-  options.max_iterations = 20;
+  options.schedule.max_iterations = 20;
   const auto white = MakeBuiltin("spectralon");
   EXPECT_LT(MeanAbsDifference(*white, FitBrdf(*white, problem, options).network), 1e-3);
 }
 
 TEST(FitStart, DrawsRandomWeightsAnewWhereAllUnitsAreDead) {
   FitProblem problem = SmallProblem();
-  problem.hidden = {1, 1};
-  problem.activation = Activation::kRelu;
+  problem.network.hidden = {1, 1};
+  problem.network.activation = Activation::kRelu;
   FitOptions options;
-  options.max_iterations = 5;
+  options.schedule.max_iterations = 5;
   const auto gold = MakeBuiltin("satin-gold");
   int restarted = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    problem.seed = seed;
+    problem.sampling.seed = seed;
     const Fit fit = FitBrdf(*gold, problem, options);
     if (fit.summary.restarts == 0) continue;
     ++restarted;
@@ -117,9 +117,9 @@ TEST(FitStart, APerfectStartIsConvergedAtOnce) {
   const NeuralBrdf black(shape, weights);
   FitOptions options;
   options.initial_weights = weights;
-  for (Solver solver : {Solver::kTinyLm, Solver::kLm, Solver::kLbfgs, Solver::kAdam}) {
+  for (const std::string solver : {"lm", "ceres_lm", "ceres_lbfgs", "adam"}) {
     options.solver = solver;
-    options.max_iterations = 12;
+    options.schedule.max_iterations = 12;
     const Fit fit = FitBrdf(black, problem, options);
     EXPECT_EQ(fit.summary.final_cost, 0.0);
     EXPECT_EQ(fit.network.weights(), weights);

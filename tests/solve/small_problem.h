@@ -9,9 +9,9 @@ namespace pbnbrdf {
 // Without an energy term.
 inline FitProblem SmallProblem() {
   FitProblem problem;
-  problem.hidden = {6};
-  problem.samples = 500;
-  problem.energy_weight = 0.0;
+  problem.network.hidden = {6};
+  problem.sampling.samples = 500;
+  problem.terms.SetWeight("energy", 0.0);
   return problem;
 }
 

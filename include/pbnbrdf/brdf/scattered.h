@@ -14,13 +14,16 @@
 //     Journal for Numerical Methods in Engineering 15(11), 1980.
 #pragma once
 
+#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "brdf/point_tree.h"
 #include "pbnbrdf/brdf/brdf.h"
 
 namespace pbnbrdf {
+
+class PointTree;
 
 struct ScatteredData {
   std::string kind;  // for the description: "ALTA file"
@@ -31,7 +34,7 @@ struct ScatteredData {
 };
 
 // The coordinates above.
-PointTree::Point ScatteredPlace(const DirectionPair& pair, bool isotropic);
+std::array<double, 4> ScatteredPlace(const DirectionPair& pair, bool isotropic);
 
 class ScatteredBrdf final : public Brdf {
  public:
@@ -57,7 +60,7 @@ class ScatteredBrdf final : public Brdf {
  private:
   ScatteredData data_;
   std::vector<std::size_t> samples_;  // of the tree's points: which sample each stands for
-  PointTree tree_;
+  std::shared_ptr<const PointTree> tree_;
 };
 
 }  // namespace pbnbrdf
