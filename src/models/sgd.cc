@@ -1,22 +1,15 @@
 #include "pbnbrdf/models/sgd.h"
 
 #include <algorithm>
-#include <bitset>
+#include <cmath>
 #include <numbers>
-#include <sstream>
 
-#include "base/text.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::uintmax_t kLargestTable = 16 << 20;
-constexpr std::string_view kHeader =
-    "name,other_name,channel,rhoD,rhoS,alpha,p,f0,f1,kap,lambda,c,k,theta0,error";
-constexpr std::size_t kColumns = 15;
 
 double Fresnel(const SgdParameters& m, double u) {
   return m.f0 + (1.0 - m.f0) * std::pow(1.0 - u, 5) - m.f1 * u;
@@ -33,53 +26,7 @@ double Shadowing(const SgdParameters& m, double theta) {
   return std::clamp(1.0 + m.lambda * (1.0 - std::exp(m.c * std::pow(excess, m.k))), 0.0, 1.0);
 }
 
-SgdParameters ParseRow(const std::string& place, const std::vector<std::string>& row) {
-  const auto number = [&](std::size_t column) {
-    return ParseNumber(StrCat(place, ", column ", column + 1), row[column]);
-  };
-  const SgdParameters m = {.rho_d = number(3),
-                           .rho_s = number(4),
-                           .alpha = number(5),
-                           .p = number(6),
-                           .f0 = number(7),
-                           .f1 = number(8),
-                           .kappa = number(9),
-                           .lambda = number(10),
-                           .c = number(11),
-                           .k = number(12),
-                           .theta_0 = number(13)};
-  if (!(m.alpha > 0.0)) Fail(place, ": alpha = ", m.alpha, "; must be > 0");
-  return m;
-}
-
 }  // namespace
-
-SgdBrdf SgdBrdf::Read(const std::string& path, const std::string& material) {
-  std::istringstream in(ReadFile(path, kLargestTable));
-  std::string line;
-  if (!std::getline(in, line) || Trim(line) != kHeader) {
-    Fail(path, ": not a table of SGD parameters: the first line must be ", kHeader);
-  }
-  std::array<SgdParameters, 3> channels;
-  std::bitset<3> found;
-  for (int number = 2; std::getline(in, line); ++number) {
-    const std::vector<std::string> row = Split(line, ',');
-    if (row[0] != material && (row.size() < 2 || row[1] != material)) continue;
-    const std::string place = StrCat(path, ": line ", number);
-    if (row.size() != kColumns) {
-      Fail(place, ": ", row.size(), " columns, expected ", kColumns);
-    }
-    const std::size_t channel = std::string_view("rgb").find(row[2]);
-    if (row[2].size() != 1 || channel == std::string_view::npos) {
-      Fail(place, ": channel '", row[2], "' is not one of r | g | b");
-    }
-    channels[channel] = ParseRow(place, row);
-    found.set(channel);
-  }
-  if (found.none()) Fail(path, ": no material '", material, "' in it");
-  if (!found.all()) Fail(path, ": material '", material, "' lacks a channel of r, g, b");
-  return SgdBrdf(material, channels);
-}
 
 std::string SgdBrdf::Description() const {
   return StrCat("SGD model of ", name_, " (Bagher et al. 2012)");

@@ -11,13 +11,13 @@
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/sources/scattered_files.h"
 #include "sources/make_scattered.h"
-#include "sources/text_lines.h"
+#include "sources/text_table.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kLargestAngle = 2.0 * std::numbers::pi + 1e-3;
-constexpr long kMostDimensions = 64;
+constexpr double kMaxAngle = 2.0 * std::numbers::pi + 1e-3;
+constexpr long kMaxDimensions = 64;
 
 struct Parametrization {
   std::string_view name;
@@ -65,24 +65,13 @@ const Parametrization& FindParametrization(const std::string& place, std::string
   Fail(place, ": #PARAM_IN ", name, " is not one of ", names);
 }
 
-// Blanks or tabs apart.
-std::vector<std::string_view> Words(std::string_view line) {
-  std::vector<std::string_view> words;
-  while (!(line = Trim(line)).empty()) {
-    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-    words.push_back(line.substr(0, end));
-    line.remove_prefix(end);
-  }
-  return words;
-}
-
 // What the lines with # say, together with where each stood.
 class Header {
  public:
-  void Take(const std::string& place, std::string_view line) {
-    const std::vector<std::string_view> words = Words(line.substr(1));
-    if (words.empty() || line[1] != words[0][0]) return;  // "# a comment"
-    entries_[std::string(words[0])] = {place, {words.begin() + 1, words.end()}};
+  void Take(const TextTable& table) {
+    const auto& words = table.cells();
+    if (words[0] == "#") return;  // "# a comment"
+    entries_[std::string(words[0].substr(1))] = {table.Place(), {words.begin() + 1, words.end()}};
   }
 
   // As many words as there must be; `otherwise` if there is no such line and that isn't empty.
@@ -116,7 +105,7 @@ struct Layout {
 };
 
 Layout Understand(const std::string& path, const Header& header) {
-  Layout layout;
+  Layout layout = {};
   const auto dimensions = header.Get(path, "DIM", 2, {});
   const auto number = [&](const std::string& key, const std::string& text, long least, long most) {
     const long value = ParseInteger(StrCat(path, ": #", key), text);
@@ -126,7 +115,7 @@ Layout Understand(const std::string& path, const Header& header) {
     return value;
   };
   layout.coordinates = &FindParametrization(path, header.Get(path, "PARAM_IN", 1, {})[0]);
-  const long coordinates = number("DIM", dimensions[0], 1, kMostDimensions);
+  const long coordinates = number("DIM", dimensions[0], 1, kMaxDimensions);
   if (coordinates != layout.coordinates->dimensions) {
     Fail(path, ": #DIM says ", coordinates, " coordinates, ", layout.coordinates->name, " has ",
          layout.coordinates->dimensions);
@@ -146,18 +135,14 @@ Layout Understand(const std::string& path, const Header& header) {
   return layout;
 }
 
-BrdfSample ParseRow(const std::string& place, std::string_view line, const Layout& layout) {
-  const std::vector<std::string_view> words = Words(line);
-  if (static_cast<long>(words.size()) != layout.columns) {
-    Fail(place, ": ", words.size(), " numbers, expected ", layout.columns);
-  }
+BrdfSample ParseRow(const TextTable& table, const Layout& layout) {
+  const std::string place = table.Place();
+  table.RequireCells(static_cast<std::size_t>(layout.columns), "numbers");
   std::vector<double> row;
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    row.push_back(ParseNumber(StrCat(place, ", number ", k + 1), words[k]));
-  }
+  for (std::size_t k = 0; k < table.cells().size(); ++k) row.push_back(table.Number(k));
   const auto coordinates = std::span(row).first(layout.coordinates->dimensions);
   for (double x : coordinates) {
-    if (std::abs(x) > kLargestAngle) Fail(place, ": ", x, " isn't an angle in radians");
+    if (std::abs(x) > kMaxAngle) Fail(place, ": ", x, " isn't an angle in radians");
   }
   BrdfSample sample;
   sample.pair = layout.coordinates->pair(coordinates);
@@ -178,20 +163,20 @@ bool LooksLikeAlta(std::string_view start) {
 }
 
 ScatteredBrdf ReadAlta(const std::string& path) {
-  TextLines lines(path);
+  TextTable table = TextTable::Read(path, TextTable::Cells::kBlanks);
+  table.RequireLastLineEnd();
   Header header;
-  Layout layout;
+  Layout layout = {};
   ScatteredData data;
-  std::string_view line;
   bool in_header = true;
-  while (lines.Next(&line)) {
-    if (line.starts_with("#")) {
-      if (in_header) header.Take(lines.Place(), line);
+  while (table.Next()) {
+    if (table.IsComment()) {
+      if (in_header) header.Take(table);
       continue;
     }
     if (in_header) layout = Understand(path, header);
     in_header = false;
-    data.samples.push_back(ParseRow(lines.Place(), line, layout));
+    data.samples.push_back(ParseRow(table, layout));
   }
   if (in_header) Fail(path, ": no measurements in it");
   data.kind = StrCat("ALTA measurements in ", layout.coordinates->name);

@@ -2,34 +2,91 @@
 
 #include <string_view>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
-#include "pbnbrdf/models/sgd.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/nbrdf_files.h"
 #include "pbnbrdf/sources/rgl.h"
 #include "pbnbrdf/sources/scattered_files.h"
+#include "pbnbrdf/sources/sgd_file.h"
 #include "sources/tensor_file.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr std::size_t kStart = 4096;  // bytes that tell what a file is
+constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n", kNpyMagic = "\x93NUMPY";
 
-// Its name's end says what it is, else its first bytes.
-std::unique_ptr<Brdf> OpenFile(const std::string& path) {
-  if (path.ends_with(".csv")) return std::make_unique<ScatteredBrdf>(ReadScatteredCsv(path));
-  if (path.ends_with(".binary")) return std::make_unique<MerlBrdf>(MerlBrdf::Read(path));
+template <class Source>
+std::unique_ptr<Brdf> Boxed(Source source) {
+  return std::make_unique<Source>(std::move(source));
+}
+
+// A JSON object behind its 8-byte length.
+bool LooksLikeSafetensors(std::string_view start) {
+  return start.size() > 8 && start[8] == '{' && start.substr(6, 2) == std::string_view("\0\0", 2);
+}
+
+// The first line that isn't a comment names columns of directions.
+bool LooksLikeCsv(std::string_view start) {
+  while (!start.empty()) {
+    const std::string_view line = start.substr(0, start.find('\n'));
+    if (!Trim(line).empty() && !line.starts_with("#")) {
+      return line.find(',') != line.npos &&
+             (line.find("theta_i") != line.npos || line.find("wi_x") != line.npos);
+    }
+    start.remove_prefix(std::min(line.size() + 1, start.size()));
+  }
+  return false;
+}
+
+// A format of files: what its first bytes look like, and how the names of its files end.
+struct Format {
+  bool (*recognizes)(std::string_view start);
+  std::initializer_list<std::string_view> endings;
+  std::unique_ptr<Brdf> (*open)(const std::string& path);
+};
+
+// Files are told by what they hold; where nothing recognises it, as in a damaged file, by their names. The
+// last format has no mark of its own: it is what all else is taken for.
+const Format kFormats[] = {
+    {LooksLikeSafetensors,
+     {".safetensors"},
+     [](const std::string& path) { return Boxed(NeuralBrdf::Read(path)); }},
+    {[](std::string_view start) {
+       return start.starts_with(kHdf5Magic) || start.starts_with(kNpyMagic);
+     },
+     {".h5", ".hdf5", ".npy"},
+     [](const std::string& path) { return Boxed(ReadNbrdf(path)); }},
+    {[](std::string_view start) { return Trim(start).starts_with("{"); },
+     {".json"},
+     [](const std::string& path) { return Boxed(AnalyticBrdf::Read(path)); }},
+    {[](std::string_view start) { return start.starts_with(TensorFile::kMagic); },
+     {".bsdf"},
+     [](const std::string& path) { return Boxed(RglBrdf::Read(path)); }},
+    {LooksLikeAlta,
+     {".alta", ".dat"},
+     [](const std::string& path) { return Boxed(ReadAlta(path)); }},
+    {LooksLikeCsv, {".csv"}, [](const std::string& path) { return Boxed(ReadScatteredCsv(path)); }},
+    {[](std::string_view) { return false; },
+     {".binary"},
+     [](const std::string& path) { return Boxed(MerlBrdf::Read(path)); }},
+};
+
+const Format& FormatOf(const std::string& path) {
   const std::string start = ReadStart(path, kStart);
-  if (path.ends_with(".bsdf") || start.starts_with(TensorFile::kMagic)) {
-    return std::make_unique<RglBrdf>(RglBrdf::Read(path));
+  for (const Format& format : kFormats) {
+    if (format.recognizes(start)) return format;
   }
-  if (path.ends_with(".alta") || path.ends_with(".dat") || LooksLikeAlta(start)) {
-    return std::make_unique<ScatteredBrdf>(ReadAlta(path));
+  for (const Format& format : kFormats) {
+    for (std::string_view ending : format.endings) {
+      if (path.ends_with(ending)) return format;
+    }
   }
-  return std::make_unique<MerlBrdf>(MerlBrdf::Read(path));
+  return kFormats[std::size(kFormats) - 1];
 }
 
 }  // namespace
@@ -43,18 +100,10 @@ std::unique_ptr<Brdf> OpenBrdf(const std::string& source) {
     if (hash == std::string::npos || hash + 1 == rest.size()) {
       Fail(source, ": expected sgd:PARAMETERS.csv#MATERIAL");
     }
-    return std::make_unique<SgdBrdf>(SgdBrdf::Read(rest.substr(0, hash), rest.substr(hash + 1)));
+    return Boxed(ReadSgd(rest.substr(0, hash), rest.substr(hash + 1)));
   }
-  if (source.ends_with(".json")) {
-    return std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(source));
-  }
-  if (NamesAnalyticModel(source)) {
-    return std::make_unique<AnalyticBrdf>(AnalyticBrdf::FromText(source));
-  }
-  if (source.ends_with(".safetensors") || IsNbrdfFile(source)) {
-    return std::make_unique<NeuralBrdf>(OpenNetwork(source));
-  }
-  return OpenFile(source);
+  if (NamesAnalyticModel(source)) return Boxed(AnalyticBrdf::FromText(source));
+  return FormatOf(source).open(source);
 }
 
 NeuralBrdf OpenNetwork(const std::string& path) {

@@ -49,8 +49,7 @@ TEST(ScaleToAlbedo, OfALambertianIsKnown) {
 TEST(ScaleToAlbedo, OfSgdMaterials) {
   PBNBRDF_REFERENCE_FILE(parameters, "sgd/parameters.csv");
   for (const char* name : {"chrome-steel", "pink-felt", "alum-bronze"}) {
-    const auto scaled =
-        ScaleToAlbedo(std::make_unique<SgdBrdf>(SgdBrdf::Read(parameters, name)), 0.99);
+    const auto scaled = ScaleToAlbedo(std::make_unique<SgdBrdf>(ReadSgd(parameters, name)), 0.99);
     EXPECT_NEAR(LargestAlbedo(*scaled), 0.99, 1e-12) << name;
   }
 }

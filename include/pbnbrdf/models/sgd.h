@@ -31,11 +31,6 @@ class SgdBrdf final : public PointwiseBrdf {
   SgdBrdf(std::string name, const std::array<SgdParameters, 3>& channels)
       : name_(std::move(name)), channels_(channels) {}
 
-  // Reads the material from a CSV with the header
-  // name,other_name,channel,rhoD,rhoS,alpha,p,f0,f1,kap,lambda,c,k,theta0,error and a row for each
-  // channel r, g, b. Throws Error: the file, the row or the material that is at fault.
-  static SgdBrdf Read(const std::string& path, const std::string& material);
-
   std::string Description() const override;
 
  protected:

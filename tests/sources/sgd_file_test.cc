@@ -46,7 +46,7 @@ TEST(Sgd, BadTablesAreNamed) {
   const std::string path = folder / "t.csv";
   const auto read = [&](const std::string& text, const std::string& material) {
     WriteBytes(path, text);
-    return ErrorOf([&] { SgdBrdf::Read(path, material); });
+    return ErrorOf([&] { ReadSgd(path, material); });
   };
   const std::string row(kRow);
   const std::string good = std::string(kHeader) + "m,,r" + row + "m,alias,g" + row + "m,,b" + row;

@@ -1,0 +1,14 @@
+// sgd_file.h: the parameters of SGD materials (models/sgd.h), as a CSV table.
+#pragma once
+
+#include <string>
+
+#include "pbnbrdf/models/sgd.h"
+
+namespace pbnbrdf {
+
+// material: a name of the first or the second column. Its three rows, one for each of the channels r, g and
+// b, hold the parameters. Throws Error, naming the file and the line.
+SgdBrdf ReadSgd(const std::string& path, const std::string& material);
+
+}  // namespace pbnbrdf

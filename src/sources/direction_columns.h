@@ -1,0 +1,38 @@
+// direction_columns.h: the columns of a table that say where light comes from and where it goes:
+// theta_i, phi_i, theta_o, phi_o in radians, or theta_i_deg, ... in degrees, each by itself; or wi_x, wi_y,
+// wi_z, wo_x, wo_y, wo_z, of any length but 0.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pbnbrdf/brdf/direction.h"
+#include "sources/text_table.h"
+
+namespace pbnbrdf {
+
+inline constexpr char kDirectionColumns[] =
+    "theta_i,phi_i,theta_o,phi_o (radians; theta_i_deg, ...: degrees) or "
+    "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z";
+
+class DirectionColumns {
+ public:
+  // None if the table's names lack them. Angles come first where both are there.
+  static std::optional<DirectionColumns> Find(const TextTable& table);
+
+  // Of the table's line. Throws Error if one isn't a number, not in its range, or a vector has no length.
+  DirectionPair Parse(const TextTable& table) const;
+
+ private:
+  struct Column {
+    std::size_t at;
+    double scale;  // what a number there is multiplied by
+  };
+
+  DirectionPair FromAngles(const TextTable& table) const;
+  DirectionPair FromVectors(const TextTable& table) const;
+
+  std::vector<Column> angles_, vectors_;  // four or none; six or none
+};
+
+}  // namespace pbnbrdf
