@@ -30,6 +30,10 @@ bool LooksLikeSafetensors(std::string_view start) {
   return start.size() > 8 && start[8] == '{' && start.substr(6, 2) == std::string_view("\0\0", 2);
 }
 
+bool LooksLikeModel(std::string_view start) {
+  return Trim(start).starts_with("{") && start.find("\"model\"") != start.npos;
+}
+
 // The first line that isn't a comment names columns of directions.
 bool LooksLikeCsv(std::string_view start) {
   while (!start.empty()) {
@@ -61,7 +65,7 @@ const Format kFormats[] = {
      },
      {".h5", ".hdf5", ".npy"},
      [](const std::string& path) { return Boxed(ReadNbrdf(path)); }},
-    {[](std::string_view start) { return Trim(start).starts_with("{"); },
+    {LooksLikeModel,
      {".json"},
      [](const std::string& path) { return Boxed(AnalyticBrdf::Read(path)); }},
     {[](std::string_view start) { return start.starts_with(TensorFile::kMagic); },

@@ -6,7 +6,7 @@
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
-#include "pbnbrdf/models/sgd.h"
+#include "pbnbrdf/sources/sgd_file.h"
 #include "pbnbrdf/sources/merl.h"
 
 namespace pbnbrdf {

@@ -1,4 +1,4 @@
-#include "pbnbrdf/models/sgd.h"
+#include "pbnbrdf/sources/sgd_file.h"
 
 #include <map>
 
@@ -58,7 +58,7 @@ TEST(Sgd, BadTablesAreNamed) {
               HasSubstr("line 2: channel 'q' is not one of r | g | b"));
   EXPECT_THAT(read(std::string(kHeader) + "m,,r,1\n", "m"), HasSubstr("line 2: 4 columns"));
   EXPECT_THAT(read(std::string(kHeader) + "m,,r,nan" + row.substr(4), "m"),
-              HasSubstr("line 2, column 4: 'nan' is not a finite number"));
+              HasSubstr("line 2, rhoD: 'nan' is not a finite number"));
   EXPECT_THAT(ErrorOf([&] { OpenBrdf("sgd:" + path); }),
               HasSubstr("expected sgd:PARAMETERS.csv#MATERIAL"));
 }

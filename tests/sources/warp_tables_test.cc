@@ -1,4 +1,4 @@
-#include "../../src/brdf/warp_tables.h"
+#include "sources/warp_tables.h"
 
 #include "test_util.h"
 
