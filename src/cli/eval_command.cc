@@ -1,66 +1,59 @@
-// pbnbrdf eval
+// pbnbrdf values
 #include <gflags/gflags.h>
 
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <iterator>
+#include <sstream>
 
 #include "commands.h"
-#include "pbnbrdf/models/analytic.h"
-#include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/sources/open_brdf.h"
-#include "report.h"
+#include "direction_csv.h"
+#include "pbnbrdf/base/files.h"
 #include "shared_flags.h"
 
-DEFINE_uint64(eval_samples, 200000, "held-out samples");
-DEFINE_uint64(eval_seed, 1, "of the held-out samples");
+DEFINE_string(directions, "", "CSV of direction pairs; - is standard input");
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::size_t kMostSamples = 100'000'000;
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{4} << 30;
 
-struct Fitted {
-  std::unique_ptr<Brdf> brdf;
-  std::size_t parameters;  // numbers that it stores
-};
-
-Fitted OpenFit(const std::string& path) {
-  if (path.ends_with(".json")) {
-    auto model = std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(path));
-    const std::size_t parameters = model->parameters().size();
-    return {std::move(model), parameters};
-  }
-  auto network = std::make_unique<NeuralBrdf>(OpenNetwork(path));
-  const std::size_t parameters = network->weights().size();
-  return {std::move(network), parameters};
+std::string ReadText(const std::string& path) {
+  if (path != "-") return ReadFile(path, kLargestFile);
+  return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 
-int RunEval(const std::vector<std::string>&) {
-  RequireFlag("fit", FLAGS_fit);
+int RunValues(const std::vector<std::string>&) {
   CheckMaterialFlags();
-  if (FLAGS_eval_samples < 1 || FLAGS_eval_samples > kMostSamples) {
-    throw UsageError(
-        StrCat("--eval_samples = ", FLAGS_eval_samples, "; must be 1 to ", kMostSamples));
-  }
-  const Fitted fit = OpenFit(FLAGS_fit);
+  RequireFlag("directions", FLAGS_directions);
+  RequireFlag("out", FLAGS_out);
+  CheckWritable(FLAGS_out);
   const std::unique_ptr<Brdf> material = OpenMaterial();
-  const nlohmann::ordered_json measures = AboutMaterial([&] {
-    return MeasureFit(*material, *fit.brdf, fit.parameters, FLAGS_eval_samples, FLAGS_eval_seed);
-  });
-  std::cout << (FLAGS_json ? measures.dump(2) + "\n" : MeasuresText(measures));
+  const DirectionCsv csv = ParseDirectionCsv(
+      FLAGS_directions == "-" ? "standard input" : FLAGS_directions, ReadText(FLAGS_directions));
+  std::vector<Rgb> values(csv.pairs.size());
+  material->Evaluate(csv.pairs, values);
+  WriteFile(FLAGS_out, FormatDirectionCsv(csv, values));
   return 0;
 }
 
 }  // namespace
 
-Command EvalCommand() {
+Command ValuesCommand() {
   Command command;
-  command.name = "eval";
-  command.summary = "measures a fit against its material";
-  command.usage = "  pbnbrdf eval --fit=gold.safetensors --material=gold.binary --json\n";
-  command.notes = kSourceNotes;
-  command.flags = {MaterialFlagsAnd({"fit", "json", "eval_samples", "eval_seed"})};
-  command.run = RunEval;
+  command.name = "values";
+  command.summary = "evaluates any source of reflectance at the direction pairs of a CSV";
+  command.usage =
+      "  pbnbrdf values --material=gold.safetensors --directions=pairs.csv --out=values.csv\n";
+  command.notes =
+      "The CSV's first line names its columns: theta_i,phi_i,theta_o,phi_o (radians; wi points to\n"
+      "the light) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (any length), among others, which are kept. "
+      "The\n"
+      "columns r,g,b are appended: linear RGB in 1/sr, without the cosine, 17 significant digits; "
+      "0\n"
+      "where a direction isn't above the horizon.\n\n" +
+      std::string(kSourceNotes);
+  command.flags = {MaterialFlagsAnd({"directions", "out"})};
+  command.run = RunValues;
   return command;
 }
 
