@@ -1,59 +1,64 @@
-// pbnbrdf values
-#include <gflags/gflags.h>
-
+// pbnbrdf eval
 #include <iostream>
 #include <iterator>
-#include <sstream>
 
 #include "commands.h"
 #include "direction_csv.h"
+#include "material_options.h"
+#include "outputs.h"
 #include "pbnbrdf/base/files.h"
-#include "shared_flags.h"
-
-DEFINE_string(directions, "", "CSV of direction pairs; - is standard input");
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{4} << 30;
+constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes: some 50 million pairs
 
-std::string ReadText(const std::string& path) {
-  if (path != "-") return ReadFile(path, kLargestFile);
-  return {std::istreambuf_iterator<char>(std::cin), {}};
+struct EvalOptions {
+  MaterialOptions material;
+  std::string directions, out;
+};
+
+Fields EvalFields(EvalOptions* options) {
+  Fields fields;
+  fields.AddRequired(MaterialField(&options->material));
+  fields.AddCommon(ScaleField(&options->material));
+  fields.AddRequired(Text("directions", &options->directions,
+                          "CSV file of pairs of directions; - is standard input"));
+  fields.AddRequired(Text("out", &options->out, "CSV file to write; - is standard output"));
+  return fields;
 }
 
-int RunValues(const std::vector<std::string>&) {
-  CheckMaterialFlags();
-  RequireFlag("directions", FLAGS_directions);
-  RequireFlag("out", FLAGS_out);
-  CheckWritable(FLAGS_out);
-  const std::unique_ptr<Brdf> material = OpenMaterial();
-  const DirectionCsv csv = ParseDirectionCsv(
-      FLAGS_directions == "-" ? "standard input" : FLAGS_directions, ReadText(FLAGS_directions));
+DirectionCsv ReadDirections(const std::string& path) {
+  if (path != "-") return ParseDirectionCsv(path, ReadFile(path, kMaxFileSize));
+  return ParseDirectionCsv("standard input", {std::istreambuf_iterator<char>(std::cin), {}});
+}
+
+int RunEval(const EvalOptions& options, const Arguments&) {
+  CheckOutputs({{"out", options.out}});
+  const std::unique_ptr<Brdf> material = options.material.Open();
+  const DirectionCsv csv = ReadDirections(options.directions);
   std::vector<Rgb> values(csv.pairs.size());
   material->Evaluate(csv.pairs, values);
-  WriteFile(FLAGS_out, FormatDirectionCsv(csv, values));
+  WriteFile(options.out, FormatDirectionCsv(csv, values));
   return 0;
 }
 
 }  // namespace
 
-Command ValuesCommand() {
+Command EvalCommand() {
   Command command;
-  command.name = "values";
-  command.summary = "evaluates any source of reflectance at the direction pairs of a CSV";
+  command.name = "eval";
+  command.summary = "evaluates any source of reflectance at the pairs of directions in a CSV file";
   command.usage =
-      "  pbnbrdf values --material=gold.safetensors --directions=pairs.csv --out=values.csv\n";
-  command.notes =
-      "The CSV's first line names its columns: theta_i,phi_i,theta_o,phi_o (radians; wi points to\n"
-      "the light) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (any length), among others, which are kept. "
-      "The\n"
-      "columns r,g,b are appended: linear RGB in 1/sr, without the cosine, 17 significant digits; "
-      "0\n"
-      "where a direction isn't above the horizon.\n\n" +
-      std::string(kSourceNotes);
-  command.flags = {MaterialFlagsAnd({"directions", "out"})};
-  command.run = RunValues;
+      "  pbnbrdf eval --material=gold.safetensors --directions=pairs.csv --out=values.csv\n";
+  command.notes = StrCat(
+      "The first line of the CSV file names its columns. They must include "
+      "theta_i,phi_i,theta_o,phi_o (radians) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (vectors of any "
+      "length); wi points to the light, wo to the viewer. All columns are kept, and r,g,b are "
+      "appended: linear RGB in 1/sr, without the cosine, with 17 significant digits. Values are 0 "
+      "where a direction isn't above the horizon.\n\n",
+      kSourceNotes);
+  command.Takes(EvalFields, RunEval);
   return command;
 }
 

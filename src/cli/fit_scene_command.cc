@@ -1,261 +1,194 @@
-#include "fit_scene.h"
-
-#include <gflags/gflags.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cstdio>
+// pbnbrdf fit-scene
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <sstream>
 
-#include "base/text.h"
 #include "base/timer.h"
-#include "fit_flags.h"
+#include "commands.h"
 #include "fit_record.h"
 #include "interrupt.h"
+#include "outputs.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/brdf/scaled.h"
-#include "pbnbrdf/render/demand.h"
+#include "pbnbrdf/solve/problem_file.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "problem/problem_fields.h"
+#include "progress_line.h"
 #include "render_summary.h"
 #include "report.h"
-#include "shared_flags.h"
-
-DEFINE_string(out_dir, "", "folder for the networks, MATERIAL.safetensors, and summary.json");
-DEFINE_double(scene_floor, pbnbrdf::FitProblem().asked_floor,
-              "part of the training samples that --sampling draws; the scene draws the others");
-
-DECLARE_bool(no_skip);
-DECLARE_bool(quiet);
-DECLARE_int32(threads);
-DECLARE_string(scene);
-DECLARE_string(summary);
+#include "scene_plan.h"
+#include "solve/fit_fields.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::size_t kMeasuredSamples = 100000;
-constexpr std::uint64_t kMeasuredSeed = 1;
-
 const std::vector<SkipReason> kReasons = {SkipReason::kUnreferenced, SkipReason::kNotReached};
 
-// A material whose sensitivity is below gets a network and samples to match, unless the flags ask
-// for even fewer.
-constexpr double kHardlyShown = 0.01;
-constexpr std::size_t kFewSamples = 6000;
-const std::vector<int> kSmallNetwork = {8, 8};
+struct FitSceneOptions {
+  std::string scene, out_dir, summary;
+  bool no_skip = false, quiet = false;
+  FitSetup setup;
 
-std::string InFolder(const std::string& file) {
-  return std::filesystem::path(FLAGS_out_dir) / file;
-}
-
-// What becomes of a material.
-struct Plan {
-  std::string name;
-  FitSubject subject;
-  double share = 0.0, sensitivity = 0.0;
-  bool needed = false;
-  std::optional<SkipReason> skip_reason;  // none: it is fitted
-  std::string why;
-  FitProblem problem;
+  std::string InFolder(const std::string& file) const {
+    return std::filesystem::path(out_dir) / file;
+  }
+  std::string SummaryFile() const { return summary.empty() ? InFolder("summary.json") : summary; }
 };
 
-// "35 %", "0.012 %"
-std::string Percent(double part) {
-  std::ostringstream text;
-  text << std::setprecision(2) << 100.0 * part << " %";
-  return text.str();
+Field SceneField(FitSceneOptions* options) {
+  return Text("scene", &options->scene,
+              "scene file (JSON); problems/scenes/README.md describes it");
 }
 
-Plan MakePlan(const SceneMaterial& material, const MaterialDemand& demand,
-              const FitProblem& problem) {
-  Plan plan;
-  plan.name = material.name;
-  plan.subject = {material.source, material.scale_to_albedo,
-                  ProblemFlagfile({"scene", "scene_floor"})};
-  plan.share = demand.share;
-  plan.sensitivity = demand.sensitivity;
-  plan.needed = demand.reached;
-  plan.problem = problem;
-  if (!demand.reached) {
-    plan.skip_reason = demand.referenced ? SkipReason::kNotReached : SkipReason::kUnreferenced;
-    plan.why = demand.referenced ? "no path gets there" : "no shape has it";
-    return plan;
-  }
-  plan.problem.asked = demand.angles;
-  plan.why = StrCat("it reflects ", Percent(demand.share), " of the image's light");
-  if (demand.sensitivity >= kHardlyShown) return plan;
-  FitProblem small = problem;
-  small.hidden = kSmallNetwork;
-  if (small.Shape().num_weights() < problem.Shape().num_weights()) {
-    plan.problem.hidden = kSmallNetwork;
-  }
-  plan.problem.samples = std::min(problem.samples, kFewSamples);
-  plan.why += " and hardly changes it: a small network and few samples";
-  return plan;
+Fields FitSceneFields(FitSceneOptions* options) {
+  Fields fields;
+  fields.Group("The scene and the files");
+  fields.AddRequired(SceneField(options));
+  fields.AddRequired(Text("out_dir", &options->out_dir,
+                          "folder for the networks, MATERIAL.safetensors, and summary.json"));
+  fields.AddCommon(Text("summary", &options->summary, "another file than OUT_DIR/summary.json"));
+  fields.AddCommon(
+      Switch("no_skip", &options->no_skip, "fit the materials that the image doesn't show, too"));
+  fields.AddCommon(Switch("quiet", &options->quiet, "print nothing"));
+  fields.Add(Integer("threads", &options->setup.options.threads, AtLeast(0),
+                     "threads to use; 0: one for each core"));
+  fields.Add(FitFields(&options->setup.problem, &options->setup.options));
+  fields.Add(SceneFields(&options->setup.problem.sampling));
+  return fields;
 }
 
-std::vector<MaterialDemand> Demand(const Scene& scene, const DemandOptions& options) try {
+// The flags that repeat the fit of one material.
+std::string Flagfile(FitSceneOptions options, const FitProblem& fitted) {
+  options.setup.problem = fitted;
+  return Fields().Add(SceneField(&options)).Lines() + ProblemText(options.setup) +
+         SceneFields(&options.setup.problem.sampling).Lines();
+}
+
+nlohmann::ordered_json PlanJson(const ScenePlan& plan, bool skips) {
+  nlohmann::ordered_json skipped;
+  if (skips) skipped = NameOf(kSkipReasons, *plan.skip_reason);
+  return {{"material", plan.name}, {"source", plan.material.source},
+          {"share", plan.share},   {"sensitivity", plan.sensitivity},
+          {"needed", plan.needed}, {"skipped", skipped},
+          {"why", plan.why}};
+}
+
+std::vector<ScenePlan> PlanFits(const Scene& scene, const FitSceneOptions& options) try {
   const auto open = [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; };
-  return MeasureDemand(scene, open, options);
+  const FitProblem& problem = options.setup.problem;
+  const std::vector<MaterialDemand> demand = MeasureDemand(
+      scene, open, {.seed = problem.sampling.seed, .threads = options.setup.options.threads});
+  std::vector<ScenePlan> plans;
+  for (std::size_t i = 0; i < demand.size(); ++i) {
+    plans.push_back(PlanFit(scene.materials[i], demand[i], problem));
+  }
+  return plans;
 } catch (const Error& error) {
-  Fail(FLAGS_scene, ": ", error.what());
+  Fail(options.scene, ": ", error.what());
 }
 
-class SceneFitter {
- public:
-  SceneFitter(const Scene& scene, const FitFlags& flags) : flags_(flags) {
-    const std::vector<MaterialDemand> demand =
-        Demand(scene, {.seed = flags.problem.seed, .threads = FLAGS_threads});
-    demand_seconds_ = timer_.Seconds();
-    for (std::size_t i = 0; i < demand.size(); ++i) {
-      plans_.push_back(MakePlan(scene.materials[i], demand[i], flags.problem));
-      work_.needed += plans_.back().needed;
-    }
-  }
+Fit FitPlanned(const ScenePlan& plan, const Brdf& material, const FitSceneOptions& options) {
+  const ProgressLine line(options.quiet);
+  FitOptions fit_options = options.setup.options;
+  fit_options.on_iteration = [&](const FitProgress& progress) {
+    line.Show(StrCat(plan.name, "  iteration ", progress.iteration, "  held-out error ",
+                     progress.heldout_error, "  ", SecondsText(progress.seconds)));
+    return !Interrupted();
+  };
+  return FitBrdf(material, plan.problem, fit_options);
+}
 
-  void Run() {
-    for (const Plan& plan : plans_) {
-      const bool skips = plan.skip_reason && !FLAGS_no_skip;
-      if (skips) ++work_.Skipped(*plan.skip_reason);
-      if (skips || Interrupted()) {
-        fits_.push_back(PlanJson(plan));
-      } else {
-        Fit(plan);
-      }
-    }
-  }
-
-  nlohmann::ordered_json Summary() const {
-    return {{"scene", FLAGS_scene},
-            {"interrupted", Interrupted()},
-            {"demand_seconds", demand_seconds_},
-            {"seconds", timer_.Seconds()},
-            {"materials", WorkJson(work_, kReasons)},
-            {"fits", fits_},
-            {"version", PBNBRDF_VERSION}};
-  }
-
-  // A line.
-  std::string Text() const { return WorkText("materials", work_, kReasons); }
-
- private:
-  nlohmann::ordered_json PlanJson(const Plan& plan) const {
-    nlohmann::ordered_json skipped;
-    if (plan.skip_reason && !FLAGS_no_skip) skipped = NameOf(kSkipReasons, *plan.skip_reason);
-    return {{"material", plan.name}, {"source", plan.subject.material},
-            {"share", plan.share},   {"sensitivity", plan.sensitivity},
-            {"needed", plan.needed}, {"skipped", skipped},
-            {"why", plan.why}};
-  }
-
-  void Fit(const Plan& plan) try {
-    const Timer timer;
-    std::unique_ptr<Brdf> material = OpenBrdf(plan.subject.material);
-    if (plan.subject.scale_to_albedo > 0.0) {
-      material = ScaleToAlbedo(std::move(material), plan.subject.scale_to_albedo);
-    }
-    FitProblem problem = plan.problem;
-    ResolveNetwork(*material, &problem);
-    FitOptions options = flags_.options;
-    options.on_iteration = [&](const FitProgress& progress) {
-      if (show_progress_) ShowProgress(plan, progress);
-      return !Interrupted();
-    };
-    const pbnbrdf::Fit fit = FitBrdf(*material, problem, options);
-    const nlohmann::ordered_json measures = MeasureFit(
-        *material, fit.network, fit.network.weights().size(), kMeasuredSamples, kMeasuredSeed);
-    const std::string file = plan.name + ".safetensors";
-    NeuralBrdf(fit.network.shape(), fit.network.weights(),
-               FitMetadata(plan.subject, problem, fit.summary, measures))
-        .Write(InFolder(file));
-    ++work_.done;
-    work_.seconds += timer.Seconds();
-    nlohmann::ordered_json json = PlanJson(plan);
-    json["file"] = file;
-    json["hidden"] = problem.hidden;
-    json.update(FitSummaryJson(plan.subject, problem, fit.summary, measures));
-    json["material"] = plan.name;
-    fits_.push_back(std::move(json));
-    Report(plan, fit);
-  } catch (const Error& error) {
-    Fail(FLAGS_scene, ": materials.", plan.name, ": ", error.what());
-  }
-
-  void ShowProgress(const Plan& plan, const FitProgress& progress) const {
-    std::fprintf(stderr, "\r\033[K%s  iteration %d  held-out error %.5f  %.1f s", plan.name.c_str(),
-                 progress.iteration, progress.heldout_error, progress.seconds);
-  }
-
-  void Report(const Plan& plan, const pbnbrdf::Fit& fit) const {
-    if (show_progress_) std::fprintf(stderr, "\r\033[K");
-    if (FLAGS_quiet) return;
+// Fits the material and writes its network. Returns what the summary says of it.
+nlohmann::ordered_json RunPlan(const ScenePlan& plan, const FitSceneOptions& options) try {
+  const std::unique_ptr<Brdf> material = plan.material.Open();
+  const Fit fit = FitPlanned(plan, *material, options);
+  const nlohmann::ordered_json measures =
+      MeasureFit(*material, fit.network, fit.network.weights().size());
+  const FitSubject subject = {plan.material, Flagfile(options, fit.problem)};
+  const std::string file = plan.name + ".safetensors";
+  WithMetadata(fit, subject, measures).Write(options.InFolder(file));
+  if (!options.quiet) {
     std::cout << plan.name << ": " << fit.network.Description() << ", " << fit.summary.seconds
               << " s; " << plan.why << "\n";
   }
-
-  const FitFlags& flags_;
-  const Timer timer_;
-  const bool show_progress_ = !FLAGS_quiet && isatty(STDERR_FILENO);
-  double demand_seconds_ = 0.0;
-  std::vector<Plan> plans_;
-  Work work_;
-  nlohmann::ordered_json fits_ = nlohmann::ordered_json::array();
-};
+  nlohmann::ordered_json json = PlanJson(plan, /*skips=*/false);
+  json["file"] = file;
+  json["hidden"] = fit.problem.network.hidden;
+  json.update(FitSummaryJson(fit, subject, measures));
+  json["material"] = plan.name;
+  return json;
+} catch (const Error& error) {
+  Fail(options.scene, ": materials.", plan.name, ": ", error.what());
+}
 
 // Names that can be files, and a folder to write them to.
-void PrepareOutputs(const Scene& scene, const std::string& summary) {
+void PrepareOutputs(const Scene& scene, const FitSceneOptions& options) {
   for (const SceneMaterial& material : scene.materials) {
     if (material.name.empty() || material.name.find('/') != std::string::npos) {
-      Fail(FLAGS_scene, ": materials.", material.name, ": the name can't be that of a file");
+      Fail(options.scene, ": materials.", material.name, ": a file can't have this name");
     }
   }
   std::error_code code;
-  std::filesystem::create_directories(FLAGS_out_dir, code);
-  CheckWritable(InFolder("summary.json"));
-  CheckWritable(summary);
+  std::filesystem::create_directories(options.out_dir, code);
+  CheckWritable(options.InFolder("summary.json"));
+  CheckOutputs({{"summary", options.SummaryFile()}});
+}
+
+int RunFitScene(const FitSceneOptions& options, const Arguments&) {
+  CheckFlags([&] { ValidateFit(options.setup.problem, options.setup.options); });
+  const Scene scene = ReadScene(options.scene);
+  PrepareOutputs(scene, options);
+  CatchInterrupt();
+  const Timer timer;
+  const std::vector<ScenePlan> plans = PlanFits(scene, options);
+  const double demand_seconds = timer.Seconds();
+  Work work;
+  nlohmann::ordered_json fits = nlohmann::ordered_json::array();
+  for (const ScenePlan& plan : plans) {
+    work.needed += plan.needed;
+    const bool skips = plan.skip_reason && !options.no_skip;
+    if (skips) ++work.Skipped(*plan.skip_reason);
+    if (skips || Interrupted()) {
+      fits.push_back(PlanJson(plan, skips));
+      continue;
+    }
+    const ScopedTimer scoped(&work.seconds);
+    fits.push_back(RunPlan(plan, options));
+    ++work.done;
+  }
+  const nlohmann::ordered_json summary = {{"scene", options.scene},
+                                          {"interrupted", Interrupted()},
+                                          {"demand_seconds", demand_seconds},
+                                          {"seconds", timer.Seconds()},
+                                          {"materials", WorkJson(work, kReasons)},
+                                          {"fits", fits},
+                                          {"version", PBNBRDF_VERSION}};
+  WriteFile(options.SummaryFile(), JsonText(summary));
+  if (!options.quiet) std::cout << WorkText("materials", work, kReasons);
+  return 0;
 }
 
 }  // namespace
 
-FlagGroup SceneFlags() {
-  return {"The materials of a scene", {"scene", "out_dir", "scene_floor", "no_skip"}};
-}
-
-bool FitsScene() {
-  if (FLAGS_scene.empty()) {
-    for (const char* name : {"out_dir", "scene_floor", "no_skip"}) {
-      if (IsGiven(name)) throw UsageError(StrCat("--", name, " is a flag of --scene"));
-    }
-    return false;
-  }
-  for (const char* name :
-       {"material", "scale_to_albedo", "out", "trace", "init", "model", "lobes"}) {
-    if (IsGiven(name)) throw UsageError(StrCat("--", name, " doesn't go with --scene"));
-  }
-  return true;
-}
-
-int RunSceneFit() {
-  RequireFlag("out_dir", FLAGS_out_dir);
-  if (!(FLAGS_scene_floor >= 0.0 && FLAGS_scene_floor <= 1.0)) {
-    throw UsageError(StrCat("--scene_floor = ", FLAGS_scene_floor, "; must be 0 to 1"));
-  }
-  FitFlags flags = ParseFitFlags();
-  flags.problem.asked_floor = FLAGS_scene_floor;
-  const std::string summary = FLAGS_summary.empty() ? InFolder("summary.json") : FLAGS_summary;
-  const Scene scene = ReadScene(FLAGS_scene);
-  PrepareOutputs(scene, summary);
-  CatchInterrupt();
-  SceneFitter fitter(scene, flags);
-  fitter.Run();
-  WriteFile(summary, JsonText(fitter.Summary()));
-  if (!FLAGS_quiet) std::cout << fitter.Text();
-  return 0;
+Command FitSceneCommand() {
+  Command command;
+  command.name = "fit-scene";
+  command.summary = "fits a network to each material that the image of a scene shows";
+  command.usage =
+      "  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
+      "  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr\n";
+  command.notes =
+      "A quick render finds out which materials the image shows, and at which angles. Each of them "
+      "is fitted at these angles, by the flags above, and written to OUT_DIR/NAME.safetensors, "
+      "where "
+      "render --fits=OUT_DIR finds it. A material that hardly changes the image (a change of "
+      "log(1 + f cos) changes it by less than a hundredth of that) gets --hidden=8,8 and at most "
+      "6000 "
+      "samples. A material that the image doesn't show is not fitted.\n"
+      "The summary says of each material what was done and why, and records the flags that repeat "
+      "its "
+      "fit. Ctrl-C ends the fits and keeps the networks so far.\n";
+  command.Takes(FitSceneFields, RunFitScene);
+  return command;
 }
 
 }  // namespace pbnbrdf::cli

@@ -1,30 +1,47 @@
-// pbnbrdf eval
-#include <gflags/gflags.h>
-
+// pbnbrdf measure
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "material_options.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "report.h"
-#include "shared_flags.h"
-
-DEFINE_uint64(eval_samples, 200000, "held-out samples");
-DEFINE_uint64(eval_seed, 1, "of the held-out samples");
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::size_t kMostSamples = 100'000'000;
+constexpr double kMaxSamples = 1e8;  // 7 GB of samples
 
-struct Fitted {
+struct MeasureCommandOptions {
+  std::string fit;
+  MaterialOptions material;
+  bool json = false;
+  MeasureOptions measure;
+};
+
+Fields MeasureCommandFields(MeasureCommandOptions* options) {
+  Fields fields;
+  fields.AddRequired(Text("fit", &options->fit,
+                          "fitted network (.safetensors, or NBRDF's .h5 or fc1.npy) or analytic "
+                          "model (.json)"));
+  fields.AddRequired(MaterialField(&options->material));
+  fields.AddCommon(ScaleField(&options->material));
+  fields.AddCommon(Switch("json", &options->json, "print one JSON object"));
+  fields.AddCommon(Integer("samples", &options->measure.samples, Between(1, kMaxSamples),
+                           "held-out samples that errors are measured at"));
+  fields.AddCommon(
+      Integer("seed", &options->measure.seed, AtLeast(0), "seed of the held-out samples"));
+  return fields;
+}
+
+struct OpenedFit {
   std::unique_ptr<Brdf> brdf;
   std::size_t parameters;  // numbers that it stores
 };
 
-Fitted OpenFit(const std::string& path) {
+OpenedFit OpenFit(const std::string& path) {
   if (path.ends_with(".json")) {
     auto model = std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(path));
     const std::size_t parameters = model->parameters().size();
@@ -35,32 +52,27 @@ Fitted OpenFit(const std::string& path) {
   return {std::move(network), parameters};
 }
 
-int RunEval(const std::vector<std::string>&) {
-  RequireFlag("fit", FLAGS_fit);
-  CheckMaterialFlags();
-  if (FLAGS_eval_samples < 1 || FLAGS_eval_samples > kMostSamples) {
-    throw UsageError(
-        StrCat("--eval_samples = ", FLAGS_eval_samples, "; must be 1 to ", kMostSamples));
-  }
-  const Fitted fit = OpenFit(FLAGS_fit);
-  const std::unique_ptr<Brdf> material = OpenMaterial();
-  const nlohmann::ordered_json measures = AboutMaterial([&] {
-    return MeasureFit(*material, *fit.brdf, fit.parameters, FLAGS_eval_samples, FLAGS_eval_seed);
+int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
+  const OpenedFit fit = OpenFit(options.fit);
+  const std::unique_ptr<Brdf> material = options.material.Open();
+  const nlohmann::ordered_json measures = AboutMaterial(options.material, [&] {
+    return MeasureFit(*material, *fit.brdf, fit.parameters, options.measure);
   });
-  std::cout << (FLAGS_json ? measures.dump(2) + "\n" : MeasuresText(measures));
+  std::cout << (options.json ? measures.dump(2) + "\n" : MeasuresText(measures));
   return 0;
 }
 
 }  // namespace
 
-Command EvalCommand() {
+Command MeasureCommand() {
   Command command;
-  command.name = "eval";
-  command.summary = "measures a fit against its material";
-  command.usage = "  pbnbrdf eval --fit=gold.safetensors --material=gold.binary --json\n";
+  command.name = "measure";
+  command.summary = "measures a fit against its material: errors, reciprocity, energy";
+  command.usage =
+      "  pbnbrdf measure --fit=gold.safetensors --material=gold.binary\n"
+      "  pbnbrdf measure --fit=gold.safetensors --material=gold.binary --json\n";
   command.notes = kSourceNotes;
-  command.flags = {MaterialFlagsAnd({"fit", "json", "eval_samples", "eval_seed"})};
-  command.run = RunEval;
+  command.Takes(MeasureCommandFields, RunMeasure);
   return command;
 }
 
