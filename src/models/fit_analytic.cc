@@ -132,15 +132,15 @@ Fields AnalyticFitFields(AnalyticFitOptions* options) {
   Fields fields;
   fields.Group("The fit");
   fields.AddCommon(Integer("lobes", &options->lobes, Between(1, kMostLobes),
-                           "lobes of the model over its diffuse part"));
+                           "number of lobes of the model, 1 or 2"));
   fields.Add(Number("loss_scale", &options->loss_scale, Above(0.0),
                     "residual at which the robust loss turns from square to linear"));
   fields.Add(Integer("first_samples", &options->first_samples, AtLeast(1),
                      "samples that the starts are compared on"));
   fields.Add(Integer("starts", &options->starts, AtLeast(1),
                      "starting points, from narrow lobes to wide ones; the best ones go on"));
-  fields.AddCommon(
-      Integer("max_iterations", &options->max_iterations, AtLeast(1), "maximum number of iterations"));
+  fields.AddCommon(Integer("max_iterations", &options->max_iterations, AtLeast(1),
+                           "maximum number of iterations"));
   fields.Add(Number("function_tolerance", &options->function_tolerance, AtLeast(0.0),
                     "stop when an iteration lowers the cost by a smaller part"));
   return fields;

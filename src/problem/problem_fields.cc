@@ -106,8 +106,8 @@ Fields SamplingFields(SamplingOptions* sampling) {
              "how training angles are drawn; highlight: half of them near the mirror direction"));
   fields.AddCommon(Integer("samples", &sampling->samples, Between(1, kMaxSamples),
                            "maximum number of training samples"));
-  fields.AddCommon(
-      Integer("seed", &sampling->seed, AtLeast(0), "seed of the samples and the initial weights"));
+  fields.AddCommon(Integer("seed", &sampling->seed, AtLeast(0),
+                           "seed of the samples and of a network's initial weights"));
   return fields;
 }
 
