@@ -9,8 +9,12 @@
 namespace pbnbrdf {
 namespace {
 
-void CheckRange(const std::string& name, double value, const Range& range) {
-  if (!range.Holds(value)) Fail(name, " = ", value, "; must be ", range.Text());
+// A number without a largest value must be finite, too; a whole number always is.
+void CheckRange(const std::string& name, double value, const Range& range, bool is_whole) {
+  if (range.Holds(value)) return;
+  const bool is_half_open = std::isfinite(range.min) && !std::isfinite(range.max);
+  Fail(name, " = ", value, "; must be ", is_half_open && !is_whole ? "finite and " : "",
+       range.Text());
 }
 
 // Value is int or std::uint64_t.
@@ -18,7 +22,8 @@ template <typename Value>
 Field IntegerField(std::string name, Value* value, Range range, std::string help) {
   return Custom(
       name, [=](std::string_view text) { *value = ParseInteger<Value>(name, text); },
-      [=] { return StrCat(*value); }, [=] { CheckRange(name, static_cast<double>(*value), range); },
+      [=] { return StrCat(*value); },
+      [=] { CheckRange(name, static_cast<double>(*value), range, /*is_whole=*/true); },
       std::move(help));
 }
 
@@ -30,7 +35,7 @@ bool Range::Holds(double value) const {
 
 std::string Range::Text() const {
   if (std::isfinite(min) && std::isfinite(max)) return StrCat(min, " to ", max);
-  if (std::isfinite(min)) return StrCat("finite and ", open ? "> " : ">= ", min);
+  if (std::isfinite(min)) return StrCat(open ? "> " : ">= ", min);
   return "finite";
 }
 
@@ -49,8 +54,8 @@ Field Custom(std::string name, std::function<void(std::string_view)> parse,
 Field Number(std::string name, double* value, Range range, std::string help) {
   return Custom(
       name, [=](std::string_view text) { *value = ParseNumber(name, text); },
-      [=] { return FormatNumber(*value); }, [=] { CheckRange(name, *value, range); },
-      std::move(help));
+      [=] { return FormatNumber(*value); },
+      [=] { CheckRange(name, *value, range, /*is_whole=*/false); }, std::move(help));
 }
 
 Field Integer(std::string name, int* value, Range range, std::string help) {
@@ -95,9 +100,16 @@ Field Integers(std::string name, std::vector<int>* values, Range range, std::str
         return text;
       },
       [=] {
-        for (int value : *values) CheckRange(name, value, range);
+        for (int value : *values) CheckRange(name, value, range, /*is_whole=*/true);
       },
       std::move(help));
+}
+
+FlagText::FlagText(std::string_view text) {
+  text.remove_prefix(text.starts_with("--") ? 2 : text.starts_with("-") ? 1 : 0);
+  const std::size_t equals = text.find('=');
+  name = text.substr(0, equals);
+  if (equals != std::string_view::npos) value = text.substr(equals + 1);
 }
 
 Fields& Fields::Add(Field field) {
@@ -109,6 +121,11 @@ Fields& Fields::Add(Field field) {
 Fields& Fields::AddCommon(Field field) {
   field.is_common = true;
   return Add(std::move(field));
+}
+
+Fields& Fields::AddRequired(Field field) {
+  field.is_required = true;
+  return AddCommon(std::move(field));
 }
 
 Fields& Fields::Add(const Fields& others) {
@@ -123,8 +140,20 @@ const Field* Fields::Find(std::string_view name) const {
   return nullptr;
 }
 
+std::string Fields::NearestName(std::string_view name) const {
+  std::vector<std::string> names;
+  for (const Field& field : fields_) names.push_back(field.name);
+  return Nearest(names, std::string(name));
+}
+
 void Fields::Check() const {
   for (const Field& field : fields_) field.check();
+}
+
+void Fields::CheckRequired() const {
+  for (const Field& field : fields_) {
+    if (field.is_required && field.text().empty()) Fail(field.name, " is required");
+  }
 }
 
 std::string Fields::Lines() const {
@@ -139,26 +168,36 @@ void Fields::ReadLines(std::string_view lines) const {
     const std::string_view text = Trim(line);
     if (text.empty() || text.starts_with("#")) continue;
     if (!text.starts_with("--")) Fail("'", text, "' is not a flag; flags begin with --");
-    const std::string_view flag = text.substr(2);
-    const std::size_t equals = flag.find('=');
-    if (equals != std::string_view::npos) {
-      Set(flag.substr(0, equals), flag.substr(equals + 1));
-    } else if (const Field* field = Find(flag); field != nullptr && field->is_switch) {
-      field->set("true");
-    } else if (const Field* negated = flag.starts_with("no") ? Find(flag.substr(2)) : nullptr;
-               negated != nullptr && negated->is_switch) {
-      negated->set("false");
+    const FlagText flag(text);
+    if (flag.value) {
+      Set(flag.name, *flag.value);
+    } else if (SetSwitch(flag.name)) {
+      continue;
+    } else if (Find(flag.name) != nullptr) {
+      Fail("--", flag.name, " needs a value");
     } else {
-      Fail("--", flag, " needs a value");
+      FailUnknown(flag.name);
     }
   }
 }
 
 void Fields::Set(std::string_view name, std::string_view text) const {
   if (const Field* field = Find(name)) return field->set(text);
-  std::vector<std::string> names;
-  for (const Field& field : fields_) names.push_back(field.name);
-  Fail("--", name, " is unknown; did you mean --", Nearest(names, std::string(name)), "?");
+  FailUnknown(name);
+}
+
+bool Fields::SetSwitch(std::string_view name) const {
+  const auto set = [&](std::string_view of, const char* value) {
+    const Field* field = Find(of);
+    if (field == nullptr || !field->is_switch) return false;
+    field->set(value);
+    return true;
+  };
+  return set(name, "true") || (name.starts_with("no") && set(name.substr(2), "false"));
+}
+
+void Fields::FailUnknown(std::string_view name) const {
+  Fail("--", name, " is unknown; did you mean --", NearestName(name), "?");
 }
 
 }  // namespace pbnbrdf

@@ -29,10 +29,11 @@ struct Range {
 
   // False for what isn't finite.
   bool Holds(double value) const;
-  // "> 0", ">= 1", "1 to 1024", "finite"
+  // "> 0", ">= 1", "1 to 1024"; "finite" if there are no bounds.
   std::string Text() const;
 };
 
+inline Range Any() { return {}; }
 inline Range AtLeast(double min) { return {.min = min}; }
 inline Range Above(double min) { return {.min = min, .open = true}; }
 inline Range Between(double min, double max) { return {.min = min, .max = max}; }
@@ -43,6 +44,7 @@ struct Field {
   std::string default_text;  // the value of the object when the field was made
   bool is_switch = false;    // of type bool
   bool is_common = false;    // one of those that people use: --help shows it
+  bool is_required = false;  // its text must not be empty
   std::string group;         // the heading that it stands under
 
   std::function<void(std::string_view text)> set;  // throws Error if the text is no value of it
@@ -71,7 +73,7 @@ Field Choice(std::string name, Enum* value, const NameTable<Enum, N>& table,
   return Custom(
       name, [name, value, &table](std::string_view text) { *value = ParseName(table, name, text); },
       [value, &table] { return std::string(NameOf(table, *value)); }, [] {},
-      help + ": " + JoinNames(table));
+      help + " (" + JoinNames(table) + ")");
 }
 
 // The same, or "auto", which stands for no value.
@@ -86,8 +88,16 @@ Field ChoiceOrAuto(std::string name, std::optional<Enum>* value, const NameTable
         *value = ParseName(names, name, text);
       },
       [value, &table] { return *value ? std::string(NameOf(table, **value)) : "auto"; }, [] {},
-      help + ": auto | " + JoinNames(table));
+      help + " (auto | " + JoinNames(table) + ")");
 }
+
+// "--name=value" or "--name", with one dash or two, in its parts.
+struct FlagText {
+  explicit FlagText(std::string_view text);
+
+  std::string name;
+  std::optional<std::string> value;
+};
 
 class Fields {
  public:
@@ -95,8 +105,9 @@ class Fields {
   void Group(std::string title) { group_ = std::move(title); }
 
   Fields& Add(Field field);
-  // The same, as one that people use.
+  // The same, as one that people use, and as one that they must use.
   Fields& AddCommon(Field field);
+  Fields& AddRequired(Field field);
   // Those of another table, under their own headings.
   Fields& Add(const Fields& others);
 
@@ -105,8 +116,14 @@ class Fields {
   // Null if there is none of that name.
   const Field* Find(std::string_view name) const;
 
+  // The name that differs from `name` in the fewest letters. There must be a field.
+  std::string NearestName(std::string_view name) const;
+
   // Throws Error "NAME = VALUE; must be ..." for the first value that is out of range.
   void Check() const;
+
+  // Throws Error "NAME is required" for the first required field whose text is empty.
+  void CheckRequired() const;
 
   // "--name=value" for each field, a line each: read back by ReadLines.
   std::string Lines() const;
@@ -118,7 +135,12 @@ class Fields {
   // Sets one field; a name that is unknown throws Error with the nearest that is known.
   void Set(std::string_view name, std::string_view text) const;
 
+  // Sets a switch from its name, or from "no" and its name; false if there is no such switch.
+  bool SetSwitch(std::string_view name) const;
+
  private:
+  [[noreturn]] void FailUnknown(std::string_view name) const;
+
   std::string group_;
   std::vector<Field> fields_;
 };

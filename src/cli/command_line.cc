@@ -1,82 +1,54 @@
 #include "command_line.h"
 
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <iomanip>
 #include <sstream>
 
 #include "base/text.h"
+#include "old_names.h"
 #include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr int kDeepestFlagfile = 8;
-constexpr std::uintmax_t kLargestFlagfile = 1 << 20;
+constexpr int kMaxFlagfileDepth = 8;  // of flagfiles that name flagfiles: ends a circle of them
+constexpr std::uintmax_t kMaxFlagfileSize = 1 << 20;  // bytes; a flagfile has a few dozen lines
 
 template <typename... Parts>
 [[noreturn]] void FailUsage(const Parts&... parts) {
   throw UsageError(StrCat(parts...));
 }
 
-// A flag's value as its user would write it: gflags shows doubles with all 17 digits.
-std::string ShownValue(const std::string& type, const std::string& value) {
-  return type == "double" ? FormatNumber(ParseNumber("flag", value)) : value;
-}
-
-std::vector<std::string> AllFlags(const Command& command) {
-  std::vector<std::string> names;
-  for (const FlagGroup& group : command.flags) {
-    names.insert(names.end(), group.names.begin(), group.names.end());
-  }
-  return names;
-}
-
 class Parser {
  public:
-  explicit Parser(const Command& command) : command_(command), flags_(AllFlags(command)) {}
+  explicit Parser(const Command& command) : command_(command) {}
 
-  void Parse(const std::vector<std::string>& arguments, int depth) {
+  // depth: of the flagfile that the arguments come from.
+  void Parse(const Arguments& arguments, int depth) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
-      const std::string& text = arguments[i];
-      if (!text.starts_with("-") || text == "-") {
-        TakeArgument(text);
+      if (!arguments[i].starts_with("-") || arguments[i] == "-") {
+        TakeArgument(arguments[i]);
         continue;
       }
-      std::string name = text.substr(text.starts_with("--") ? 2 : 1);
-      std::string value;
-      const std::size_t equals = name.find('=');
-      if (equals != std::string::npos) {
-        value = name.substr(equals + 1);
-        name.resize(equals);
-      } else if (IsSwitch(name)) {
-        value = "true";
-      } else if (name.starts_with("no") && IsSwitch(name.substr(2))) {
-        name = name.substr(2);
-        value = "false";
-      } else if (IsKnown(name) && i + 1 < arguments.size()) {
-        value = arguments[++i];
-      } else if (IsKnown(name)) {
-        FailUsage("--", name, " needs a value");
+      FlagText flag(arguments[i]);
+      CheckOldFlag(command_.name, flag.name, flag.value.value_or(""));
+      if (!flag.value && command_.flags.SetSwitch(flag.name)) continue;
+      const bool is_flagfile = flag.name == "flagfile";
+      if (!is_flagfile && command_.flags.Find(flag.name) == nullptr) FailUnknown(flag.name);
+      if (!flag.value) {
+        if (i + 1 == arguments.size()) FailUsage("--", flag.name, " needs a value");
+        flag.value = arguments[++i];
+        CheckOldFlag(command_.name, flag.name, *flag.value);
       }
-      Set(name, value, depth);
+      if (is_flagfile) {
+        ReadFlagfile(*flag.value, depth);
+      } else {
+        CheckFlags([&] { command_.flags.Set(flag.name, *flag.value); });
+      }
     }
   }
 
-  const std::vector<std::string>& arguments() const { return arguments_; }
+  const Arguments& arguments() const { return arguments_; }
 
  private:
-  bool IsKnown(const std::string& name) const {
-    return name == "flagfile" || std::count(flags_.begin(), flags_.end(), name) > 0;
-  }
-
-  bool IsSwitch(const std::string& name) const {
-    gflags::CommandLineFlagInfo info;
-    return IsKnown(name) && gflags::GetCommandLineFlagInfo(name.c_str(), &info) &&
-           info.type == "bool";
-  }
-
   void TakeArgument(const std::string& text) {
     if (arguments_.size() == command_.arguments.size()) {
       FailUsage("'", text, "' is not a flag; flags begin with --");
@@ -84,23 +56,17 @@ class Parser {
     arguments_.push_back(text);
   }
 
-  void Set(const std::string& name, const std::string& value, int depth) {
-    if (name == "flagfile") return ReadFlagfile(value, depth);
-    if (!IsKnown(name)) {
-      FailUsage("--", name, " is not a flag of '", command_.name, "'; did you mean --",
-                Nearest(flags_, name), "? See pbnbrdf ", command_.name, " --help");
-    }
-    if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
-      gflags::CommandLineFlagInfo info;
-      gflags::GetCommandLineFlagInfo(name.c_str(), &info);
-      FailUsage("--", name, "=", value, " is not a ", info.type, " value");
-    }
+  [[noreturn]] void FailUnknown(const std::string& name) const {
+    const bool has_flags = !command_.flags.all().empty();
+    FailUsage("--", name, " is not a flag of '", command_.name, "'",
+              has_flags ? "; did you mean --" + command_.flags.NearestName(name) + "?" : ".",
+              " See pbnbrdf ", command_.name, " --help");
   }
 
   void ReadFlagfile(const std::string& path, int depth) {
-    if (depth >= kDeepestFlagfile) FailUsage(path, ": flagfiles are nested too deep");
-    std::istringstream in(ReadFile(path, kLargestFlagfile));
-    std::vector<std::string> lines;
+    if (depth >= kMaxFlagfileDepth) FailUsage(path, ": flagfiles are nested too deep");
+    std::istringstream in(ReadFile(path, kMaxFlagfileSize));
+    Arguments lines;
     for (std::string line; std::getline(in, line);) {
       const std::string text(Trim(line));
       if (text.empty() || text.starts_with("#")) continue;
@@ -115,63 +81,21 @@ class Parser {
   }
 
   const Command& command_;
-  const std::vector<std::string> flags_;
-  std::vector<std::string> arguments_;
+  Arguments arguments_;
 };
 
 }  // namespace
 
-std::vector<std::string> ParseFlags(const Command& command,
-                                    const std::vector<std::string>& arguments) {
+Arguments ParseFlags(const Command& command, const Arguments& arguments) {
   Parser parser(command);
   parser.Parse(arguments, 0);
+  CheckFlags([&] {
+    command.flags.CheckRequired();
+    command.flags.Check();
+  });
   const std::size_t given = parser.arguments().size();
   if (given < command.arguments.size()) FailUsage(command.arguments[given], " is missing");
   return parser.arguments();
-}
-
-std::string HelpText(const Command& command) {
-  std::ostringstream help;
-  help << "pbnbrdf " << command.name << ": " << command.summary << "\n\n" << command.usage;
-  for (const FlagGroup& group : command.flags) {
-    help << "\n" << group.title << (group.title.empty() ? "" : ":\n");
-    for (const std::string& name : group.names) {
-      gflags::CommandLineFlagInfo info;
-      gflags::GetCommandLineFlagInfo(name.c_str(), &info);
-      help << "  --" << std::left << std::setw(20) << name << " " << info.description;
-      if (!info.default_value.empty() && info.type != "bool") {
-        help << " [" << ShownValue(info.type, info.default_value) << "]";
-      }
-      help << "\n";
-    }
-  }
-  if (!command.flags.empty()) {
-    help << "\n--flagfile=FILE reads flags from a file, one a line; later flags replace earlier "
-            "ones.\n";
-  }
-  if (!command.notes.empty()) help << "\n" << command.notes;
-  help << "\nExit status: 0 done, 1 bad input or output, 2 wrong usage.\n";
-  return help.str();
-}
-
-std::vector<std::string> FlagLines(const std::vector<std::string>& names) {
-  std::vector<std::string> lines;
-  for (const std::string& name : names) {
-    gflags::CommandLineFlagInfo info;
-    if (gflags::GetCommandLineFlagInfo(name.c_str(), &info)) {
-      lines.push_back(StrCat("--", name, "=", ShownValue(info.type, info.current_value)));
-    }
-  }
-  return lines;
-}
-
-bool IsGiven(const std::string& name) {
-  gflags::CommandLineFlagInfo info;
-  return gflags::GetCommandLineFlagInfo(name.c_str(), &info) && !info.is_default;
-}
-
-void RequireFlag(const std::string& name, const std::string& value) {
-  if (value.empty()) FailUsage("--", name, " is required");
 }
 
 }  // namespace pbnbrdf::cli

@@ -1,9 +1,13 @@
-// command_line.h: subcommands, their flags and their help.
+// command_line.h: subcommands, and the parser of their flags.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/fields.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf::cli {
@@ -14,36 +18,41 @@ class UsageError : public Error {
   using Error::Error;
 };
 
-struct FlagGroup {
-  std::string title;  // "" for the first group
-  std::vector<std::string> names;
-};
+// Runs what may find fault with the value of a flag. Throws UsageError in place of Error: with "--" before
+// the message, which begins with the flag's name.
+template <typename Function>
+auto CheckFlags(Function function) {
+  try {
+    return function();
+  } catch (const Error& error) {
+    throw UsageError(StrCat("--", error.what()));
+  }
+}
+
+using Arguments = std::vector<std::string>;
 
 struct Command {
   std::string name;
-  std::string summary;                 // one line
-  std::string usage;                   // examples, a line each
-  std::string notes;                   // more lines for --help
-  std::vector<FlagGroup> flags;        // those of gflags' that belong to it
-  std::vector<std::string> arguments;  // what the positional arguments are
-  int (*run)(const std::vector<std::string>& arguments);
+  std::string summary;                       // one line
+  std::string usage;                         // examples, a line each
+  std::string notes;                         // more lines for --help, of any length
+  Arguments arguments;                       // what the positional arguments are
+  Fields flags;                              // of the options that the command owns
+  std::function<int(const Arguments&)> run;  // returns the exit status
+
+  // Gives the command options of its own, the table of their fields, and what to do with them.
+  template <typename Options>
+  void Takes(Fields (*fields)(Options*), int (*function)(const Options&, const Arguments&)) {
+    const auto options = std::make_shared<Options>();
+    flags = fields(options.get());
+    run = [options, function](const Arguments& given) { return function(*options, given); };
+  }
 };
 
-// Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of
-// the same, # for comments; later settings replace earlier ones) into gflags' flags. Returns the
-// positional arguments, as many as the command has. Throws UsageError.
-std::vector<std::string> ParseFlags(const Command& command,
-                                    const std::vector<std::string>& arguments);
-
-std::string HelpText(const Command& command);
-
-// "--name=value" for each flag that gflags holds, of those named.
-std::vector<std::string> FlagLines(const std::vector<std::string>& names);
-
-// Whether the command line, or a flagfile, has set the flag to anything but its default.
-bool IsGiven(const std::string& name);
-
-// Throws UsageError "--name is required" if the flag's value is empty.
-void RequireFlag(const std::string& name, const std::string& value);
+// Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of the same,
+// # for comments; later settings replace earlier ones) into the command's options. Returns the positional
+// arguments, as many as the command has. Throws UsageError, also if a value is out of range or a required
+// flag is missing.
+Arguments ParseFlags(const Command& command, const Arguments& arguments);
 
 }  // namespace pbnbrdf::cli

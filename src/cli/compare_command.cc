@@ -1,6 +1,4 @@
 // pbnbrdf compare
-#include <gflags/gflags.h>
-
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -10,18 +8,34 @@
 #include "base/text.h"
 #include "commands.h"
 #include "lpips_weights.h"
-#include "pbnbrdf/base/files.h"
+#include "outputs.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/open_image.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "shared_flags.h"
-
-DEFINE_string(error_map, "", "OpenEXR file to write: |test - reference|, linear RGB");
-DEFINE_string(lpips, "",
-              "safetensors file of the weights of LPIPS with AlexNet: measures that, too");
 
 namespace pbnbrdf::cli {
 namespace {
+
+struct CompareOptions {
+  bool json = false;
+  std::string error_map, lpips;
+};
+
+Fields CompareFields(CompareOptions* options) {
+  Fields fields;
+  fields.AddCommon(Switch("json", &options->json, "print one JSON object"));
+  fields.AddCommon(Text("error_map", &options->error_map,
+                        "OpenEXR file to write: |test - reference|, linear RGB"));
+  fields.AddCommon(Custom(
+      "lpips",
+      [options](std::string_view text) {
+        if (text.empty()) Fail("lpips= needs a file");
+        options->lpips = text;
+      },
+      [options] { return options->lpips; }, [] {},
+      "measure LPIPS, too, with the weights of AlexNet in this safetensors file"));
+  return fields;
+}
 
 struct Measure {
   const char* key;
@@ -69,43 +83,44 @@ void PrintText(const Measured& measured) {
             << " times the linear value, cut to [0, 1].\n";
 }
 
-// The weights if --lpips is given. Throws Error.
-std::optional<LpipsWeights> RequestedLpipsWeights() {
-  if (!IsGiven("lpips")) return std::nullopt;
-  if (FLAGS_lpips.empty()) throw UsageError("--lpips= needs a file");
-  return ReadLpipsWeights(FLAGS_lpips);
-}
-
 // Of the shown images. Throws Error, which names the file of weights.
 double ShownLpips(const Image& reference, const Image& test, double exposure,
-                  const LpipsWeights& weights) {
+                  const LpipsWeights& weights, const std::string& file) {
   const Image shown_reference = DisplayImage(reference, exposure);
   const Image shown_test = DisplayImage(test, exposure);
   try {
     return Lpips(shown_reference, shown_test, weights);
   } catch (const Error& error) {
-    Fail(FLAGS_lpips, ": ", error.what());
+    Fail(file, ": ", error.what());
   }
 }
 
-int RunCompare(const std::vector<std::string>& arguments) {
-  if (!FLAGS_error_map.empty()) CheckWritable(FLAGS_error_map);
-  const std::optional<LpipsWeights> lpips = RequestedLpipsWeights();
-  const std::string& reference_path = arguments[0];
-  const std::string& test_path = arguments[1];
+// Measures the two images, and writes the map of errors if it is asked for.
+Measured Compare(const CompareOptions& options, const std::string& reference_path,
+                 const std::string& test_path) {
+  std::optional<LpipsWeights> lpips;
+  if (!options.lpips.empty()) lpips = ReadLpipsWeights(options.lpips);
   const Image reference = OpenImage(reference_path), test = OpenImage(test_path);
   CheckComparable(reference, test, reference_path, test_path);
   if (lpips) CheckLargeEnoughForLpips(reference, reference_path);
   Measured measured{CompareImages(reference, test), std::nullopt};
-  if (lpips) measured.lpips = ShownLpips(reference, test, measured.errors.exposure, *lpips);
-  if (!FLAGS_error_map.empty()) {
-    WriteExr(FLAGS_error_map, AbsoluteDifference(reference, test),
+  if (lpips) {
+    measured.lpips = ShownLpips(reference, test, measured.errors.exposure, *lpips, options.lpips);
+  }
+  if (!options.error_map.empty()) {
+    WriteExr(options.error_map, AbsoluteDifference(reference, test),
              {{"reference", reference_path},
               {"test", test_path},
               {"rmse", FormatNumber(measured.errors.rmse)},
               {"software", StrCat("pbnbrdf ", PBNBRDF_VERSION)}});
   }
-  if (FLAGS_json) {
+  return measured;
+}
+
+int RunCompare(const CompareOptions& options, const Arguments& arguments) {
+  CheckOutputs({{"error_map", options.error_map}});
+  const Measured measured = Compare(options, arguments[0], arguments[1]);
+  if (options.json) {
     std::cout << ToJson(measured).dump(2) << "\n";
   } else {
     PrintText(measured);
@@ -114,17 +129,21 @@ int RunCompare(const std::vector<std::string>& arguments) {
 }
 
 constexpr char kNotes[] =
-    "Images are OpenEXR (channels R, G, B: half, float or integer) or PNG (8 or 16 bits, taken as\n"
-    "sRGB); both of the same size, at least 11 x 11. Nothing is rounded on the way.\n"
-    "mae, mse, rmse are of the linear values. psnr, ssim, flip, delta_e_2000, lpips are of what a\n"
-    "screen shows: both images times one exposure, 1 / the 99th percentile of the reference's\n"
-    "luminance, cut to [0, 1]; sRGB values for psnr, ssim and lpips. hdr_flip looks at exposures\n"
-    "from that for the reference's brightest pixel to that for its median, so that highlights\n"
-    "count.\n"
-    "JSON keys: mae mse rmse psnr ssim flip hdr_flip delta_e_2000, and lpips with --lpips; psnr\n"
-    "is null if the shown images are equal.\n"
-    "lpips is LPIPS 0.1 with AlexNet (Zhang et al. 2018), for images of at least 31 x 31. The\n"
-    "weights don't come with this program; the Python package lpips has them:\n"
+    "Images are OpenEXR files (channels R, G, B: half, float or integer) or PNG files (8 or 16 "
+    "bits, "
+    "taken as sRGB). Both must have the same size, at least 11 x 11. Values are never rounded.\n"
+    "mae, mse and rmse are errors of the linear values. psnr, ssim, flip, delta_e_2000 and lpips "
+    "are "
+    "errors of what a screen shows: both images are multiplied by one exposure, 1 / the 99th "
+    "percentile of the reference's luminance, and cut to [0, 1]; psnr, ssim and lpips compare "
+    "their "
+    "sRGB values. hdr_flip covers exposures from one that suits the reference's brightest pixel to "
+    "one that suits its median, so that highlights count.\n"
+    "JSON keys: mae mse rmse psnr ssim flip hdr_flip delta_e_2000, and lpips with --lpips; psnr is "
+    "null if the shown images are equal.\n"
+    "lpips is LPIPS 0.1 with AlexNet (Zhang et al. 2018), for images of at least 31 x 31. The "
+    "weights "
+    "don't come with this program; the Python package lpips has them:\n"
     "  import lpips, safetensors.torch; w = lpips.LPIPS(net='alex').state_dict()\n"
     "  safetensors.torch.save_file({k: v.clone() for k, v in w.items()}, 'alex.safetensors')\n";
 
@@ -139,9 +158,8 @@ Command CompareCommand() {
       "  pbnbrdf compare reference.exr test.exr --json --error_map=err.exr\n"
       "  pbnbrdf compare reference.exr test.exr --lpips=alex.safetensors\n";
   command.notes = kNotes;
-  command.flags = {{"", {"json", "error_map", "lpips"}}};
   command.arguments = {"the reference image", "the test image"};
-  command.run = RunCompare;
+  command.Takes(CompareFields, RunCompare);
   return command;
 }
 

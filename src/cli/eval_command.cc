@@ -1,53 +1,45 @@
 // pbnbrdf eval
-#include <gflags/gflags.h>
-
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <iterator>
 
 #include "commands.h"
-#include "pbnbrdf/models/analytic.h"
-#include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/sources/open_brdf.h"
-#include "report.h"
-#include "shared_flags.h"
-
-DEFINE_uint64(eval_samples, 200000, "held-out samples");
-DEFINE_uint64(eval_seed, 1, "of the held-out samples");
+#include "direction_csv.h"
+#include "material_options.h"
+#include "outputs.h"
+#include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::size_t kMostSamples = 100'000'000;
+constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes: some 50 million pairs
 
-struct Fitted {
-  std::unique_ptr<Brdf> brdf;
-  std::size_t parameters;  // numbers that it stores
+struct EvalOptions {
+  MaterialOptions material;
+  std::string directions, out;
 };
 
-Fitted OpenFit(const std::string& path) {
-  if (path.ends_with(".json")) {
-    auto model = std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(path));
-    const std::size_t parameters = model->parameters().size();
-    return {std::move(model), parameters};
-  }
-  auto network = std::make_unique<NeuralBrdf>(OpenNetwork(path));
-  const std::size_t parameters = network->weights().size();
-  return {std::move(network), parameters};
+Fields EvalFields(EvalOptions* options) {
+  Fields fields;
+  fields.AddRequired(MaterialField(&options->material));
+  fields.AddCommon(ScaleField(&options->material));
+  fields.AddRequired(Text("directions", &options->directions,
+                          "CSV file of pairs of directions; - is standard input"));
+  fields.AddRequired(Text("out", &options->out, "CSV file to write; - is standard output"));
+  return fields;
 }
 
-int RunEval(const std::vector<std::string>&) {
-  RequireFlag("fit", FLAGS_fit);
-  CheckMaterialFlags();
-  if (FLAGS_eval_samples < 1 || FLAGS_eval_samples > kMostSamples) {
-    throw UsageError(
-        StrCat("--eval_samples = ", FLAGS_eval_samples, "; must be 1 to ", kMostSamples));
-  }
-  const Fitted fit = OpenFit(FLAGS_fit);
-  const std::unique_ptr<Brdf> material = OpenMaterial();
-  const nlohmann::ordered_json measures = AboutMaterial([&] {
-    return MeasureFit(*material, *fit.brdf, fit.parameters, FLAGS_eval_samples, FLAGS_eval_seed);
-  });
-  std::cout << (FLAGS_json ? measures.dump(2) + "\n" : MeasuresText(measures));
+DirectionCsv ReadDirections(const std::string& path) {
+  if (path != "-") return ParseDirectionCsv(path, ReadFile(path, kMaxFileSize));
+  return ParseDirectionCsv("standard input", {std::istreambuf_iterator<char>(std::cin), {}});
+}
+
+int RunEval(const EvalOptions& options, const Arguments&) {
+  CheckOutputs({{"out", options.out}});
+  const std::unique_ptr<Brdf> material = options.material.Open();
+  const DirectionCsv csv = ReadDirections(options.directions);
+  std::vector<Rgb> values(csv.pairs.size());
+  material->Evaluate(csv.pairs, values);
+  WriteFile(options.out, FormatDirectionCsv(csv, values));
   return 0;
 }
 
@@ -56,11 +48,17 @@ int RunEval(const std::vector<std::string>&) {
 Command EvalCommand() {
   Command command;
   command.name = "eval";
-  command.summary = "measures a fit against its material";
-  command.usage = "  pbnbrdf eval --fit=gold.safetensors --material=gold.binary --json\n";
-  command.notes = kSourceNotes;
-  command.flags = {MaterialFlagsAnd({"fit", "json", "eval_samples", "eval_seed"})};
-  command.run = RunEval;
+  command.summary = "evaluates any source of reflectance at the pairs of directions in a CSV file";
+  command.usage =
+      "  pbnbrdf eval --material=gold.safetensors --directions=pairs.csv --out=values.csv\n";
+  command.notes = StrCat(
+      "The first line of the CSV file names its columns. They must include "
+      "theta_i,phi_i,theta_o,phi_o (radians) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (vectors of any "
+      "length); wi points to the light, wo to the viewer. All columns are kept, and r,g,b are "
+      "appended: linear RGB in 1/sr, without the cosine, with 17 significant digits. Values are 0 "
+      "where a direction isn't above the horizon.\n\n",
+      kSourceNotes);
+  command.Takes(EvalFields, RunEval);
   return command;
 }
 

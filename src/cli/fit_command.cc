@@ -1,63 +1,52 @@
 // pbnbrdf fit
-#include <gflags/gflags.h>
-#include <unistd.h>
-
-#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
 #include "commands.h"
-#include "fit_flags.h"
-#include "fit_model.h"
 #include "fit_record.h"
-#include "fit_scene.h"
 #include "interrupt.h"
+#include "material_options.h"
+#include "outputs.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/solve/fit.h"
+#include "pbnbrdf/solve/problem_file.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "progress_line.h"
 #include "report.h"
-#include "shared_flags.h"
-
-DECLARE_string(encoding);
-DECLARE_string(init);
-DEFINE_string(summary, "", "write what was measured and done to this JSON file");
-DEFINE_string(trace, "", "write a row for each iteration to this CSV");
-DEFINE_bool(quiet, false, "print nothing");
+#include "solve/fit_fields.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::size_t kSummarySamples = 100000;
-constexpr std::uint64_t kSummarySeed = 1;
+struct FitCommandOptions {
+  MaterialOptions material;
+  std::string init;  // a network to start from
+  std::string out, summary, trace;
+  bool quiet = false;
+  FitSetup setup;
+};
 
-void ShowProgress(const FitProgress& progress) {
-  std::fprintf(stderr, "\r\033[Kiteration %d  cost %.4g  held-out error %.5f  %.1f s",
-               progress.iteration, progress.cost, progress.heldout_error, progress.seconds);
+// What is fitted; with the fields of the setup that is all that it takes to repeat the fit.
+Fields SubjectFields(FitCommandOptions* options) {
+  Fields fields;
+  fields.Group("The material and the files");
+  fields.AddRequired(MaterialField(&options->material));
+  fields.Add(ScaleField(&options->material));
+  fields.Add(Text("init", &options->init,
+                  "start from this fitted network, which has the same shape and encoding"));
+  return fields;
 }
 
-std::string TraceRow(const FitProgress& progress) {
-  return StrCat(progress.iteration, ",", FormatNumber(progress.seconds), ",",
-                FormatNumber(progress.cost), ",", FormatNumber(progress.heldout_error), "\n");
-}
-
-// What the energy term did, in a line; "" if it wasn't needed.
-std::string EnergyText(const EnergySummary& energy) {
-  if (energy.rounds == 0 && energy.correction == 0.0) return "";
-  return StrCat("energy term: largest albedo ", energy.first_max_albedo, " without it, ",
-                energy.rounds, " rounds, at the end log(1 + f) lowered by ", energy.correction,
-                "\n");
-}
-
-// Throws UsageError if a file is named twice; empty names stand for none.
-void CheckDifferent(const std::vector<std::string>& outputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (!outputs[i].empty() && outputs[i] == outputs[j]) {
-        throw UsageError(StrCat(outputs[i], ": is to be two outputs at once"));
-      }
-    }
-  }
+Fields FitCommandFields(FitCommandOptions* options) {
+  Fields fields = SubjectFields(options);
+  fields.AddRequired(Text("out", &options->out, "file for the network, FILE.safetensors"));
+  fields.AddCommon(Text("summary", &options->summary, "JSON file for errors and how the fit went"));
+  fields.Add(Text("trace", &options->trace, "CSV file for a row of each iteration"));
+  fields.AddCommon(Switch("quiet", &options->quiet, "print nothing"));
+  fields.Add(Integer("threads", &options->setup.options.threads, AtLeast(0),
+                     "threads to use; 0: one for each core"));
+  fields.Add(FitFields(&options->setup.problem, &options->setup.options));
+  return fields;
 }
 
 // Of the network in a file, which must have the shape and the encoding that the problem has.
@@ -71,63 +60,79 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
   return network.weights();
 }
 
-int RunFit(const std::vector<std::string>&) {
-  if (FitsScene()) return RunSceneFit();
-  CheckMaterialFlags();
-  RequireFlag("out", FLAGS_out);
-  if (FitsModel()) return RunModelFit();
-  FitFlags flags = ParseFitFlags();
-  CheckDifferent({FLAGS_out, FLAGS_summary, FLAGS_trace});
-  CheckWritable(FLAGS_out);
-  if (!FLAGS_summary.empty()) CheckWritable(FLAGS_summary);
-  if (!FLAGS_trace.empty()) CheckWritable(FLAGS_trace);
-  CatchInterrupt();
-  const std::unique_ptr<Brdf> material = OpenMaterial();
-  ResolveNetwork(*material, &flags.problem);
-  FLAGS_encoding = NameOf(kEncodings, flags.problem.encoding);  // for the flagfile of this fit
-  if (!FLAGS_init.empty()) {
-    flags.options.initial_weights = WeightsOf(FLAGS_init, flags.problem.Shape());
-    ValidateFit(flags.problem, flags.options);
-  }
+std::string ProgressText(const FitProgress& progress) {
+  return StrCat("iteration ", progress.iteration, "  cost ", progress.cost, "  held-out error ",
+                progress.heldout_error, "  ", SecondsText(progress.seconds));
+}
 
-  const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
-  std::string trace = "iteration,seconds,cost,heldout_error\n";
-  flags.options.on_iteration = [&](const FitProgress& progress) {
-    if (show_progress) ShowProgress(progress);
-    trace += TraceRow(progress);
+std::string TraceRow(const FitProgress& progress) {
+  return StrCat(progress.iteration, ",", FormatNumber(progress.seconds), ",",
+                FormatNumber(progress.cost), ",", FormatNumber(progress.heldout_error), "\n");
+}
+
+// With the rows of the trace.
+Fit FitNetwork(const FitCommandOptions& options, const Brdf& material, std::string* trace) {
+  const FitProblem& problem = options.setup.problem;
+  FitOptions fit_options = options.setup.options;
+  if (!options.init.empty()) {
+    fit_options.initial_weights = WeightsOf(options.init, problem.For(material).Shape());
+  }
+  const ProgressLine line(options.quiet);
+  fit_options.on_iteration = [&](const FitProgress& progress) {
+    line.Show(ProgressText(progress));
+    *trace += TraceRow(progress);
     return !Interrupted();
   };
-  const Fit fit = AboutMaterial([&] { return FitBrdf(*material, flags.problem, flags.options); });
-  if (show_progress) std::fprintf(stderr, "\r\033[K");
+  return AboutMaterial(options.material, [&] { return FitBrdf(material, problem, fit_options); });
+}
 
-  const nlohmann::ordered_json measures = MeasureFit(
-      *material, fit.network, fit.network.weights().size(), kSummarySamples, kSummarySeed);
-  const FitSubject subject = {FLAGS_material, FLAGS_scale_to_albedo,
-                              ProblemFlagfile(MaterialFlags())};
-  NeuralBrdf(fit.network.shape(), fit.network.weights(),
-             FitMetadata(subject, flags.problem, fit.summary, measures))
-      .Write(FLAGS_out);
-  if (!FLAGS_summary.empty()) {
-    WriteFile(FLAGS_summary,
-              JsonText(FitSummaryJson(subject, flags.problem, fit.summary, measures)));
+// What the energy term did, in a line; "" if it wasn't needed.
+std::string EnergyText(const EnergySummary& energy) {
+  if (energy.rounds == 0 && energy.correction == 0.0) return "";
+  return StrCat("energy term: largest albedo ", energy.first_max_albedo, " without it; ",
+                energy.rounds, " rounds with it; log(1 + f) then lowered by ", energy.correction,
+                "\n");
+}
+
+void PrintFit(const std::string& out, const Brdf& material, const Fit& fit,
+              const nlohmann::ordered_json& measures) {
+  const FitSummary& summary = fit.summary;
+  std::cout << out << ": " << fit.network.Description() << "; "
+            << NameOf(kTerminations, summary.termination) << " after " << summary.iterations
+            << " iterations, " << summary.seconds << " s\n"
+            << MeasuresText(measures) << EnergyText(summary.energy);
+  if (summary.termination == Termination::kDiverged) {
+    std::cout << "diverged: " << summary.message << "\n";
   }
-  if (!FLAGS_trace.empty()) WriteFile(FLAGS_trace, trace);
-  if (!FLAGS_quiet) {
-    std::cout << FLAGS_out << ": " << fit.network.Description() << "; "
-              << NameOf(kTerminations, fit.summary.termination) << " after "
-              << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
-              << MeasuresText(measures) << EnergyText(fit.summary.energy);
-    if (fit.summary.termination == Termination::kDiverged) {
-      std::cout << "diverged: " << fit.summary.message << "\n";
-    }
-    if (!material->IsIsotropic() && fit.network.IsIsotropic()) {
-      std::cout << "the material is anisotropic, the fit the best isotropic one: "
-                   "--encoding=anisotropic goes further\n";
-    }
-    if (fit.summary.precision_limited) {
-      std::cout << "single precision limited the fit: --precision=double goes further\n";
-    }
+  if (!material.IsIsotropic() && fit.network.IsIsotropic()) {
+    std::cout << "the material is anisotropic, and this is the best isotropic fit: "
+                 "--encoding=anisotropic gets closer\n";
   }
+  if (summary.precision_limited) {
+    std::cout << "single precision limited the fit: --precision=double gets closer\n";
+  }
+}
+
+int RunFit(const FitCommandOptions& options, const Arguments&) {
+  CheckFlags([&] { ValidateFit(options.setup.problem, options.setup.options); });
+  CheckOutputs({{"out", options.out}, {"summary", options.summary}, {"trace", options.trace}});
+  CatchInterrupt();
+  const std::unique_ptr<Brdf> material = options.material.Open();
+  std::string trace = "iteration,seconds,cost,heldout_error\n";
+  const Fit fit = FitNetwork(options, *material, &trace);
+  const nlohmann::ordered_json measures =
+      MeasureFit(*material, fit.network, fit.network.weights().size());
+
+  FitCommandOptions copy = options;
+  const FitSubject subject = {
+      options.material,
+      SubjectFields(&copy).Lines() + ProblemText({fit.problem, options.setup.options})};
+  WithMetadata(fit, subject, measures).Write(options.out);
+  if (!options.summary.empty()) {
+    WriteFile(options.summary, JsonText(FitSummaryJson(fit, subject, measures)));
+  }
+  if (!options.trace.empty()) WriteFile(options.trace, trace);
+  if (!options.quiet) PrintFit(options.out, *material, fit, measures);
   return 0;
 }
 
@@ -136,32 +141,16 @@ int RunFit(const std::vector<std::string>&) {
 Command FitCommand() {
   Command command;
   command.name = "fit";
-  command.summary = "fits a neural BRDF to a material, or an analytic model";
+  command.summary = "fits a neural BRDF to a material";
   command.usage =
       "  pbnbrdf fit --material=gold.binary --out=gold.safetensors\n"
       "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary "
-      "--out=gold.safetensors\n"
-      "  pbnbrdf fit --model=ggx --lobes=2 --material=gold.binary --out=gold.json\n"
-      "  pbnbrdf fit --scene=problems/scenes/sphere.json --out_dir=fits\n";
+      "--out=gold.safetensors\n";
   command.notes =
-      std::string(kSourceNotes) +
-      "\nWith --model the file holds the model, its parameters and its errors; of the flags above "
-      "it\n"
-      "takes sampling, samples [6000], seed, loss_scale, starts [12], max_iterations [100] and\n"
-      "function_tolerance [1e-05].\n"
-      "\nWith --scene a few paths find out which materials the scene shows, and from where. Each "
-      "is\n"
-      "fitted, by the flags above, to OUT_DIR/NAME.safetensors: render --fits=OUT_DIR takes them. "
-      "What\n"
-      "hardly changes the image (by less than a hundredth of a change of log(1 + f cos)) gets\n"
-      "--hidden=8,8 and 6000 samples at most, what no path gets to nothing. summary.json, or\n"
-      "--summary, says for each what was needed and why. Ctrl-C keeps the networks so far.\n"
-      "\nCtrl-C stops after the iteration and keeps the best network so far.\n";
-  command.flags = {MaterialFlagsAnd({"out", "summary", "trace", "quiet", "threads"})};
-  for (const FlagGroup& group : ProblemFlags()) command.flags.push_back(group);
-  command.flags.push_back(ModelFlags());
-  command.flags.push_back(SceneFlags());
-  command.run = RunFit;
+      StrCat(kSourceNotes,
+             "\nThe network's file and the summary record the flags that repeat the fit, bit for "
+             "bit. Ctrl-C ends the fit after the iteration and keeps the best network so far.\n");
+  command.Takes(FitCommandFields, RunFit);
   return command;
 }
 

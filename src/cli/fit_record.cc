@@ -1,12 +1,9 @@
 #include "fit_record.h"
 
-#include <gflags/gflags.h>
-
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-
-DECLARE_string(terms);
+#include "problem/problem_fields.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -23,26 +20,31 @@ nlohmann::ordered_json EnergyJson(const EnergySummary& energy) {
           {"jacobians_skipped", energy.work.jacobians_skipped}};
 }
 
+std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms")->text(); }
+
 }  // namespace
 
-NeuralBrdf::Metadata FitMetadata(const FitSubject& subject, const FitProblem& problem,
-                                 const FitSummary& summary,
-                                 const nlohmann::ordered_json& measures) {
-  return {{"version", PBNBRDF_VERSION},
-          {"material", subject.material},
-          {"scale_to_albedo", FormatNumber(subject.scale_to_albedo)},
-          {"terms", FLAGS_terms},
-          {"problem", subject.problem},
-          {"seed", StrCat(problem.seed)},
-          {"termination", std::string(NameOf(kTerminations, summary.termination))},
-          {"mean_abs_log_error", FormatNumber(measures["mean_abs_log_error"])},
-          {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}};
+NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
+                        const nlohmann::ordered_json& measures) {
+  const auto& [network, problem, summary] = fit;
+  return {network.shape(),
+          network.weights(),
+          {{"version", PBNBRDF_VERSION},
+           {"material", subject.material.source},
+           {"scale_to_albedo", FormatNumber(subject.material.scale_to_albedo)},
+           {"terms", TermsText(problem.terms)},
+           {"problem", subject.flagfile},
+           {"seed", StrCat(problem.sampling.seed)},
+           {"termination", std::string(NameOf(kTerminations, summary.termination))},
+           {"mean_abs_log_error", FormatNumber(measures["mean_abs_log_error"])},
+           {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}}};
 }
 
-nlohmann::ordered_json FitSummaryJson(const FitSubject& subject, const FitProblem& problem,
-                                      const FitSummary& summary, nlohmann::ordered_json measures) {
-  measures["material"] = subject.material;
-  measures["scale_to_albedo"] = subject.scale_to_albedo;
+nlohmann::ordered_json FitSummaryJson(const Fit& fit, const FitSubject& subject,
+                                      nlohmann::ordered_json measures) {
+  const FitSummary& summary = fit.summary;
+  measures["material"] = subject.material.source;
+  measures["scale_to_albedo"] = subject.material.scale_to_albedo;
   measures["cost"] = summary.final_cost;
   measures["iterations"] = summary.iterations;
   measures["restarts"] = summary.restarts;
@@ -52,16 +54,12 @@ nlohmann::ordered_json FitSummaryJson(const FitSubject& subject, const FitProble
   measures["energy_term"] = EnergyJson(summary.energy);
   measures["precision_limited"] = summary.precision_limited;
   measures["seconds"] = summary.seconds;
-  measures["seed"] = problem.seed;
+  measures["seed"] = fit.problem.sampling.seed;
   measures["termination"] = NameOf(kTerminations, summary.termination);
   measures["message"] = summary.message;
   measures["version"] = PBNBRDF_VERSION;
-  measures["problem"] = subject.problem;
+  measures["problem"] = subject.flagfile;
   return measures;
-}
-
-std::string JsonText(const nlohmann::ordered_json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace pbnbrdf::cli

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "commands.h"
+#include "material_options.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -20,7 +21,7 @@ void ListBuiltins() {
 }
 
 std::string ShownBounds(const ModelParameter& parameter) {
-  return StrCat(parameter.lower, " to ", parameter.upper, ", else ", parameter.initial);
+  return StrCat(parameter.lower, " to ", parameter.upper, ", default ", parameter.initial);
 }
 
 void ListParameters(std::span<const ModelParameter> table) {
@@ -29,17 +30,16 @@ void ListParameters(std::span<const ModelParameter> table) {
               << (parameter.size == 3 ? "; R/G/B" : "") << "; " << ShownBounds(parameter) << "\n";
     if (!parameter.pair_name.empty()) {
       std::cout << "    " << std::left << std::setw(16) << parameter.pair_name
-                << "both of the two above\n";
+                << "sets both of the above\n";
     }
   }
 }
 
 void ListModels() {
   std::cout
-      << "An analytic model is a source with its parameters after a colon, colours as R/G/B or "
-         "one number:\n"
-         "ggx:f0=1/0.78/0.34,alpha=0.2,rho_d=0.05. Lobes may be two: names of the second one's "
-         "end with _2.\n";
+      << "An analytic model is written as its name, a colon and its parameters, such as\n"
+         "ggx:f0=1/0.78/0.34,alpha=0.2,rho_d=0.05. A colour is R/G/B or one number. For a second "
+         "lobe,\nadd _2 to the names of its parameters.\n";
   for (const AnalyticModel& model : AnalyticModels()) {
     std::cout << model.name << ": (" << model.paper << ")\n";
     ListParameters(model.base);
@@ -62,7 +62,7 @@ void PrintMetadata(const std::map<std::string, std::string>& metadata) {
   }
 }
 
-int RunInfo(const std::vector<std::string>& arguments) {
+int RunInfo(const Arguments& arguments) {
   const std::string& source = arguments[0];
   if (source == "builtin:") {
     ListBuiltins();
@@ -91,7 +91,7 @@ Command InfoCommand() {
   command.summary = "says what a source of reflectance is";
   command.usage =
       "  pbnbrdf info gold.safetensors\n"
-      "  pbnbrdf info builtin:          lists the materials that ship with the program\n"
+      "  pbnbrdf info builtin:          lists the materials that come with the program\n"
       "  pbnbrdf info models:           lists the analytic models and their parameters\n";
   command.notes = kSourceNotes;
   command.arguments = {"a file or another source"};

@@ -2,40 +2,49 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <new>
 
 #include "commands.h"
+#include "help.h"
+#include "old_names.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
-std::array<Command, 8> Commands() {
-  return {FitCommand(),    EvalCommand(), ExportCommand(),  TabulateCommand(),
-          ValuesCommand(), InfoCommand(), CompareCommand(), RenderCommand()};
+// In the order in which people need them.
+std::vector<Command> Commands() {
+  return {FitCommand(),     MeasureCommand(),  InfoCommand(), EvalCommand(), ExportCommand(),
+#ifdef PBNBRDF_HAS_RENDER
+          RenderCommand(),  FitSceneCommand(),
+#endif
+          CompareCommand(), FitModelCommand()};
 }
 
-std::string Overview() {
-  std::string text =
-      "pbnbrdf: fits small neural BRDFs that obey physics to measured materials, by nonlinear\n"
-      "least squares.\n\n"
-      "  pbnbrdf fit --material=builtin:satin-gold --out=gold.safetensors\n"
-      "  pbnbrdf eval --fit=gold.safetensors --material=builtin:satin-gold\n\n"
-      "Commands:\n";
-  for (const Command& command : Commands()) {
-    text += StrCat("  ", command.name, std::string(10 - command.name.size(), ' '), command.summary,
-                   "\n");
+// Whether the arguments ask for help; `all` if for all of it.
+bool AsksForHelp(const Arguments& arguments, bool* all) {
+  for (const std::string& argument : arguments) {
+    *all = argument == "--help=all";
+    if (*all || argument == "--help" || argument == "-h") return true;
   }
-  return text + "\npbnbrdf COMMAND --help explains each; pbnbrdf --version tells the version.\n";
+  return false;
 }
 
-int Run(const std::vector<std::string>& arguments) {
+int RunCommand(const Command& command, const Arguments& arguments) {
+  if (bool all; AsksForHelp(arguments, &all)) {
+    std::cout << HelpText(command, all);
+    return 0;
+  }
+  return command.run(ParseFlags(command, arguments));
+}
+
+int Run(const Arguments& arguments) {
   const std::string name = arguments.empty() ? "" : arguments[0];
+  const std::vector<Command> commands = Commands();
   if (name == "--help" || name == "-h" || name == "help") {
-    std::cout << Overview();
+    std::cout << OverviewText(commands);
     return 0;
   }
   if (name == "--version") {
@@ -43,46 +52,47 @@ int Run(const std::vector<std::string>& arguments) {
     return 0;
   }
   std::string names;
-  for (const Command& command : Commands()) {
+  for (const Command& command : commands) {
+    if (command.name == name) return RunCommand(command, {arguments.begin() + 1, arguments.end()});
     names += StrCat(names.empty() ? "" : " | ", command.name);
-    if (command.name != name) continue;
-    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
-    for (const std::string& argument : rest) {
-      if (argument == "--help" || argument == "-h" || argument == "--helpshort") {
-        std::cout << HelpText(command);
-        return 0;
-      }
-    }
-    return command.run(ParseFlags(command, rest));
   }
+  CheckOldCommand(name);
   if (name.empty()) throw UsageError(StrCat("no command given: ", names, "; see pbnbrdf --help"));
   throw UsageError(StrCat("'", name, "' is not a command: ", names, "; see pbnbrdf --help"));
+}
+
+// Ceres logs by glog. What it has to say comes back in its summary: nothing is logged anywhere.
+void SilenceLog(const char* program) {
+  google::InitGoogleLogging(program);
+  google::SetStderrLogging(google::GLOG_FATAL);
+  for (int severity = google::GLOG_INFO; severity <= google::GLOG_FATAL; ++severity) {
+    google::SetLogDestination(severity, "");
+  }
+}
+
+// One line, whatever names and texts are quoted in it.
+void PrintError(std::string message) {
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 127; }, '?');
+  std::fprintf(stderr, "pbnbrdf: %s\n", message.c_str());
 }
 
 }  // namespace
 }  // namespace pbnbrdf::cli
 
 int main(int argc, char** argv) {
-  FLAGS_logtostderr = true;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres has to say comes back in its summary
-  google::InitGoogleLogging(argv[0]);
+  using pbnbrdf::cli::PrintError;
+  pbnbrdf::cli::SilenceLog(argv[0]);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
-  const auto fail = [](std::string message, int status) {
-    // One line, whatever names and texts are quoted in it.
-    std::replace_if(
-        message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-    std::fprintf(stderr, "pbnbrdf: %s\n", message.c_str());
-    return status;
-  };
   try {
     return pbnbrdf::cli::Run({argv + 1, argv + argc});
   } catch (const pbnbrdf::cli::UsageError& error) {
-    return fail(error.what(), 2);
-  } catch (const pbnbrdf::Error& error) {
-    return fail(error.what(), 1);
+    PrintError(error.what());
+    return 2;
   } catch (const std::bad_alloc&) {
-    return fail("out of memory", 1);
+    PrintError("out of memory");
   } catch (const std::exception& error) {
-    return fail(error.what(), 1);
+    PrintError(error.what());
   }
+  return 1;
 }

@@ -1,9 +1,4 @@
 // pbnbrdf render
-#include <gflags/gflags.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -11,56 +6,89 @@
 #include "base/text.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "material_options.h"
+#include "outputs.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/render/render.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "progress_line.h"
 #include "render_summary.h"
-#include "shared_flags.h"
-
-DECLARE_uint64(seed);
-DECLARE_int32(threads);
-DECLARE_bool(quiet);
-DECLARE_string(summary);
-DEFINE_string(scene, "", "scene file (JSON); problems/scenes/README.md describes it");
-DEFINE_string(environment, "",
-              "OpenEXR file, latitude-longitude, in place of the scene's environment light");
-DEFINE_string(fits, "", "folder of networks that fit --scene has fitted to the scene's materials");
-DEFINE_string(png, "", "write the image as PNG (sRGB), too");
-DEFINE_double(exposure, 1.0, "of the PNG: what radiance is multiplied by, > 0");
-DEFINE_int32(samples_per_pixel, 256, "paths for each pixel");
-DEFINE_int32(max_bounces, 64, "reflections between camera and light, at most");
-DEFINE_string(estimator, "mis",
-              "where the light at a reflection is looked for: brdf (where the material reflects), "
-              "light, or mis (both); the images differ in noise only");
-DEFINE_double(
-    target_error, 0.0,
-    "stop sampling pixels whose standard error is below this times (mean + 0.01); 0: never");
-DEFINE_bool(no_skip, false,
-            "do all that the image doesn't depend on, too, to compare with: the same image");
 
 namespace pbnbrdf::cli {
 namespace {
 
-// --material=NAME=SOURCE, several with ; in between.
-std::map<std::string, std::string> MaterialChanges() {
+struct RenderCommandOptions {
+  std::string scene, environment, materials, fits, out, png, summary;
+  double exposure = 1.0;
+  bool no_skip = false, quiet = false;
+  RenderOptions render;
+};
+
+// What the image's file records, besides the scene and the seed. ValidateRender knows the ranges.
+Fields RecordedFields(RenderCommandOptions* options) {
+  RenderOptions* render = &options->render;
+  Fields fields;
+  fields.AddCommon(Text("environment", &options->environment,
+                        "OpenEXR file (latitude-longitude) that replaces the scene's environment "
+                        "light"));
+  fields.AddCommon(Text("material", &options->materials,
+                        "NAME=SOURCE;...: sources that replace those of the scene's materials"));
+  fields.AddCommon(Text("fits", &options->fits,
+                        "folder of networks that fit-scene wrote; they replace the materials"));
+  fields.AddCommon(
+      Integer("samples_per_pixel", &render->samples_per_pixel, Any(), "paths for each pixel"));
+  fields.Add(Integer("max_bounces", &render->max_bounces, Any(),
+                     "maximum number of reflections of a path"));
+  fields.Add(Choice("estimator", &render->estimator, kEstimators,
+                    "how light is found: by sampling the brdf, by sampling lights (light), or both "
+                    "(mis); the images differ in noise only"));
+  fields.AddCommon(Number("target_error", &render->target_error, Any(),
+                          "stop sampling pixels whose standard error is below this times "
+                          "(mean + 0.01); 0: off"));
+  return fields;
+}
+
+Fields RenderFields(RenderCommandOptions* options) {
+  Fields fields;
+  fields.AddRequired(
+      Text("scene", &options->scene, "scene file (JSON); problems/scenes/README.md describes it"));
+  fields.AddRequired(Text("out", &options->out, "OpenEXR file for the image"));
+  fields.AddCommon(Text("png", &options->png, "also write the image as PNG (sRGB)"));
+  fields.AddCommon(
+      Number("exposure", &options->exposure, Above(0.0), "factor on the radiance in the PNG"));
+  fields.AddCommon(
+      Text("summary", &options->summary, "JSON file for counts of what was done and skipped"));
+  fields.Add(RecordedFields(options));
+  fields.AddCommon(Integer("seed", &options->render.seed, Any(), "seed of the paths"));
+  fields.Add(Switch("no_skip", &options->no_skip,
+                    "also do the work that cannot change the image; for comparison: the image "
+                    "stays the same, bit for bit"));
+  fields.Add(
+      Integer("threads", &options->render.threads, Any(), "threads to use; 0: one for each core"));
+  fields.AddCommon(Switch("quiet", &options->quiet, "print nothing"));
+  return fields;
+}
+
+// Reads --material=NAME=SOURCE;NAME=SOURCE;...
+std::map<std::string, std::string> MaterialChanges(const std::string& changes) {
   std::map<std::string, std::string> sources;
-  if (FLAGS_material.empty()) return sources;
-  for (const std::string& change : Split(FLAGS_material, ';')) {
+  if (changes.empty()) return sources;
+  for (const std::string& change : Split(changes, ';')) {
     const std::size_t equals = change.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == change.size()) {
-      throw UsageError(StrCat("--material=", change, "; of the form NAME=SOURCE"));
+      throw UsageError(StrCat("--material=", change, ": must be of the form NAME=SOURCE"));
     }
     if (!sources.emplace(change.substr(0, equals), change.substr(equals + 1)).second) {
-      throw UsageError(StrCat("--material: ", change.substr(0, equals), " is there twice"));
+      throw UsageError(StrCat("--material: ", change.substr(0, equals), " is given twice"));
     }
   }
   return sources;
 }
 
-// The networks that fit --scene has left in the folder take the place of their materials.
-void TakeFits(const std::string& folder, std::vector<SceneMaterial>* materials) {
+// Replaces each material by its network in the folder, where fit-scene has written one.
+void UseFits(const std::string& folder, std::vector<SceneMaterial>* materials) {
   bool found = false;
   for (SceneMaterial& material : *materials) {
     const std::filesystem::path file =
@@ -68,114 +96,99 @@ void TakeFits(const std::string& folder, std::vector<SceneMaterial>* materials) 
     if (!std::filesystem::exists(file)) continue;
     found = true;
     material.source = file;
-    material.scale_to_albedo = 0.0;  // the network is of the scaled material
+    material.scale_to_albedo = 0.0;  // the network was fitted to the scaled material
   }
-  if (!found) Fail("--fits=", folder, ": has none of the scene's materials, NAME.safetensors");
+  if (!found)
+    Fail("--fits=", folder, ": has no NAME.safetensors for any material NAME of the scene");
 }
 
-RenderOptions ParseOptions() try {
-  RenderOptions options;
-  options.samples_per_pixel = FLAGS_samples_per_pixel;
-  options.seed = FLAGS_seed;
-  options.threads = FLAGS_threads;
-  options.max_bounces = FLAGS_max_bounces;
-  options.estimator = ParseName(kEstimators, "--estimator", FLAGS_estimator);
-  options.target_error = FLAGS_target_error;
-  options.skip = !FLAGS_no_skip;
-  ValidateRender(options);
-  if (!(FLAGS_exposure > 0.0) || !std::isfinite(FLAGS_exposure)) {
-    Fail("--exposure = ", FLAGS_exposure, "; must be finite and > 0");
-  }
-  return options;
+RenderOptions CheckedOptions(const RenderCommandOptions& options) try {
+  RenderOptions render = options.render;
+  render.skip = !options.no_skip;
+  ValidateRender(render);
+  return render;
 } catch (const Error& error) {
   std::string message = error.what();
-  const std::string_view field = "RenderOptions::";  // its fields are called as the flags are
+  const std::string_view field = "RenderOptions::";  // its fields have the names of the flags
   if (message.starts_with(field)) message.replace(0, field.size(), "--");
   throw UsageError(message);
 }
 
-std::map<std::string, std::string> Metadata(const RenderSummary& summary) {
-  std::map<std::string, std::string> metadata = {{"pbnbrdf:version", PBNBRDF_VERSION},
-                                                 {"pbnbrdf:scene", FLAGS_scene},
-                                                 {"pbnbrdf:seed", StrCat(FLAGS_seed)},
-                                                 {"pbnbrdf:samples", StrCat(summary.samples)}};
-  metadata["pbnbrdf:stopped"] = summary.stopped ? "true" : "false";
-  for (const std::string& line : FlagLines({"environment", "material", "fits", "samples_per_pixel",
-                                            "max_bounces", "estimator", "target_error"})) {
-    const std::size_t equals = line.find('=');
-    metadata["pbnbrdf:" + line.substr(2, equals - 2)] = line.substr(equals + 1);
-  }
+std::map<std::string, std::string> Metadata(RenderCommandOptions options,
+                                            const RenderSummary& summary) {
+  std::map<std::string, std::string> metadata = {
+      {"pbnbrdf:version", PBNBRDF_VERSION},
+      {"pbnbrdf:scene", options.scene},
+      {"pbnbrdf:seed", StrCat(options.render.seed)},
+      {"pbnbrdf:samples", StrCat(summary.samples)},
+      {"pbnbrdf:stopped", summary.stopped ? "true" : "false"}};
+  const Fields recorded = RecordedFields(&options);
+  for (const Field& field : recorded.all()) metadata["pbnbrdf:" + field.name] = field.text();
   return metadata;
 }
 
-void WriteImages(const Rendering& rendering) {
+void WriteImages(const RenderCommandOptions& options, const Rendering& rendering) {
   std::vector<FileContent> files = {
-      {FLAGS_out, ExrBytes(rendering.image, Metadata(rendering.summary))}};
-  if (!FLAGS_png.empty()) files.push_back({FLAGS_png, PngBytes(rendering.image, FLAGS_exposure)});
-  if (!FLAGS_summary.empty()) {
-    files.push_back({FLAGS_summary, ToJson(rendering.summary).dump(2) + "\n"});
+      {options.out, ExrBytes(rendering.image, Metadata(options, rendering.summary))}};
+  if (!options.png.empty()) {
+    files.push_back({options.png, PngBytes(rendering.image, options.exposure)});
+  }
+  if (!options.summary.empty()) {
+    files.push_back({options.summary, JsonText(ToJson(rendering.summary))});
   }
   WriteFiles(files);
 }
 
-// --out and the flags of the files that are written beside it.
-void CheckOutputs() {
-  CheckWritable(FLAGS_out);
-  std::vector<std::string> names = {FLAGS_out};
-  for (const auto& [flag, name] :
-       {std::pair("png", FLAGS_png), std::pair("summary", FLAGS_summary)}) {
-    if (name.empty()) continue;
-    CheckWritable(name);
-    if (FLAGS_out == "-") throw UsageError(StrCat("--", flag, ": --out must be a file, too"));
-    if (std::count(names.begin(), names.end(), name) > 0) {
-      throw UsageError(StrCat(name, ": is to be two outputs at once"));
+// Several files are written at once, which standard output can't be one of.
+void CheckImageOutputs(const RenderCommandOptions& options) {
+  const std::vector<Output> beside = {{"png", options.png}, {"summary", options.summary}};
+  std::vector<Output> outputs = {{"out", options.out}};
+  for (const Output& output : beside) {
+    if (!output.path.empty() && options.out == "-") {
+      throw UsageError(StrCat("--", output.flag, ": --out must be a file"));
     }
-    names.push_back(name);
+    outputs.push_back(output);
   }
+  CheckOutputs(outputs);
 }
 
-void PrintSummary(const Image& image, const RenderSummary& summary) {
-  std::cout << FLAGS_out << ": " << image.width << " x " << image.height << " pixels, "
-            << summary.samples << " samples, " << summary.seconds << " s"
-            << (summary.stopped ? "; stopped early" : "") << "\n"
+Rendering RenderScene(const RenderCommandOptions& options, const Scene& scene,
+                      RenderOptions render) try {
+  const ProgressLine line(options.quiet);
+  int shown = -1;
+  render.on_progress = [&](const RenderProgress& progress) {
+    const int percent = static_cast<int>(100.0 * progress.fraction);
+    if (percent != shown) line.Show(StrCat(percent, " %  ", SecondsText(progress.seconds)));
+    shown = percent;
+    return !Interrupted();
+  };
+  const auto open = [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; };
+  return Render(scene, open, render);
+} catch (const Error& error) {
+  Fail(options.scene, ": ", error.what());
+}
+
+void PrintSummary(const std::string& out, const Image& image, const RenderSummary& summary) {
+  std::cout << out << ": " << image.width << " x " << image.height << " pixels, " << summary.samples
+            << " samples, " << summary.seconds << " s" << (summary.stopped ? "; stopped early" : "")
+            << "\n"
             << WorkText(summary.work);
 }
 
-int RunRender(const std::vector<std::string>&) {
-  RequireFlag("scene", FLAGS_scene);
-  RequireFlag("out", FLAGS_out);
-  RenderOptions options = ParseOptions();
-  const SceneChanges changes = {FLAGS_environment, MaterialChanges()};
-  CheckOutputs();
-  Scene scene = ReadScene(FLAGS_scene, changes);
-  if (!FLAGS_fits.empty()) TakeFits(FLAGS_fits, &scene.materials);
+int RunRender(const RenderCommandOptions& options, const Arguments&) {
+  const RenderOptions render = CheckedOptions(options);
+  const SceneChanges changes = {options.environment, MaterialChanges(options.materials)};
+  CheckImageOutputs(options);
+  Scene scene = ReadScene(options.scene, changes);
+  if (!options.fits.empty()) UseFits(options.fits, &scene.materials);
   CatchInterrupt();
-  const bool show_progress = !FLAGS_quiet && isatty(STDERR_FILENO);
-  int shown = -1;
-  options.on_progress = [&](const RenderProgress& progress) {
-    const int percent = static_cast<int>(100.0 * progress.fraction);
-    if (show_progress && percent != shown) {
-      shown = percent;
-      std::fprintf(stderr, "\r\033[K%d %%  %.1f s", percent, progress.seconds);
-    }
-    return !Interrupted();
-  };
-  const Rendering rendering = [&] {
-    try {
-      return Render(
-          scene, [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; },
-          options);
-    } catch (const Error& error) {
-      Fail(FLAGS_scene, ": ", error.what());
-    }
-  }();
-  if (show_progress) std::fprintf(stderr, "\r\033[K");
-  WriteImages(rendering);
+  const Rendering rendering = RenderScene(options, scene, render);
+  WriteImages(options, rendering);
   const RenderSummary& summary = rendering.summary;
-  if (!FLAGS_quiet && FLAGS_out != "-") PrintSummary(rendering.image, summary);
+  if (!options.quiet && options.out != "-") PrintSummary(options.out, rendering.image, summary);
   if (summary.dropped_samples > 0) {
     std::cerr << "pbnbrdf: " << summary.dropped_samples
-              << " samples dropped: their radiance wasn't finite\n";
+              << " samples were dropped: their radiance was not finite\n";
   }
   return 0;
 }
@@ -190,40 +203,37 @@ Command RenderCommand() {
       "  pbnbrdf render --scene=problems/scenes/sphere.json --out=sphere.exr --png=sphere.png\n"
       "  pbnbrdf render --scene=problems/scenes/sphere.json --environment=studio.exr \\\n"
       "                 --material=surface=gold.safetensors --out=gold.exr\n"
-      "  pbnbrdf fit --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
+      "  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
       "  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr\n"
       "  pbnbrdf render --scene=problems/scenes/gallery.json --samples_per_pixel=4096 \\\n"
       "                 --target_error=0.02 --out=gallery.exr --summary=gallery.json\n";
-  command.notes =
-      "--material=NAME=SOURCE gives the scene's material NAME another source, several with ; in\n"
-      "between. Files that a scene names are in its folder; sources of materials may be, too.\n"
-      "--fits=DIR takes DIR/NAME.safetensors for material NAME, where there is one.\n"
-      "\nWhat the image doesn't depend on is left out: materials that no path gets to aren't "
-      "opened,\n"
-      "parts of the image without shapes trace no rays, and materials aren't asked for directions\n"
-      "below the horizon, hidden lights, or paths that lead to no light. The lines printed in the "
-      "end\n"
-      "and --summary=FILE.json (the same as numbers) count what was done, what was skipped and "
-      "why, "
-      "and\n"
-      "estimate the time saved: skipped ones times the mean time of one that was done. --no_skip "
-      "does\n"
-      "it all: the same bits, later, and an error if any material can't be opened.\n"
-      "\n--target_error=E gives pixels no more samples once each of a block of 4 x 4 has at least "
-      "32 and\n"
-      "a standard error of the mean luminance below E (mean + 0.01), looked at every 16 samples;\n"
-      "--samples_per_pixel is the most that a pixel gets.\n"
-      "\nThe OpenEXR file holds linear radiance, RGB as float, and says in its header how it was "
-      "made.\n"
-      "The image depends on the seed, not on the number of threads. Ctrl-C stops after the tile "
-      "and\n"
-      "keeps the image so far.\n\n" +
-      std::string(kSourceNotes);
-  command.flags = {{"",
-                    {"scene", "environment", "material", "fits", "out", "png", "exposure",
-                     "summary", "samples_per_pixel", "target_error", "seed", "max_bounces",
-                     "estimator", "no_skip", "threads", "quiet"}}};
-  command.run = RunRender;
+  command.notes = StrCat(
+      "--material=NAME=SOURCE replaces the source of the scene's material NAME; several are "
+      "separated by semicolons. --fits=DIR replaces each material NAME for which there is "
+      "DIR/NAME.safetensors. Files that a scene names are in its folder; sources of materials may "
+      "also be elsewhere.\n"
+      "\n"
+      "Work that cannot change the image is skipped: materials that no path hits are not opened, "
+      "tiles that show no shape trace no rays, and BRDFs are not evaluated for directions below "
+      "the "
+      "horizon, for hidden lights, or for rays that lead to no light. The summary, printed at the "
+      "end and written to --summary=FILE.json, counts the work that was done and the work that was "
+      "skipped, and why. The time saved is estimated as the number skipped times the mean time of "
+      "what was done. With --no_skip nothing is skipped: the image is the same, bit for bit, but "
+      "all "
+      "materials must open.\n"
+      "\n"
+      "--target_error=E samples adaptively: a block of 4 x 4 pixels stops when each pixel has at "
+      "least 32 samples and a standard error of its mean luminance below E (mean + 0.01). That is "
+      "checked every 16 samples. --samples_per_pixel is then the maximum for a pixel.\n"
+      "\n"
+      "The OpenEXR file holds linear radiance, RGB as 32-bit floats, and its header says how it "
+      "was "
+      "made. The image depends on the seed, but not on the number of threads. After Ctrl-C the "
+      "current tiles are finished and the image so far is written.\n"
+      "\n",
+      kSourceNotes);
+  command.Takes(RenderFields, RunRender);
   return command;
 }
 

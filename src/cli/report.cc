@@ -9,12 +9,12 @@
 #include "pbnbrdf/problem/sampling.h"
 
 namespace pbnbrdf::cli {
-
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Of materials: nearer to the horizon measurements have no data, and models go astray.
-constexpr double kLastAngle = 85.0 * kDegree;
+// Of incidence, for the albedo of a material: nearer to the horizon measurements have no data, and models
+// are wrong.
+constexpr double kMaxMaterialAngle = 85.0 * kDegree;
 
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
@@ -29,13 +29,13 @@ std::string EnergyVerdict(const Energy& energy) {
 }  // namespace
 
 nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
-                                  std::size_t samples, std::uint64_t seed) {
-  const std::vector<BrdfSample> heldout = HeldOutSamples(material, samples, seed);
+                                  const MeasureOptions& options) {
+  const std::vector<BrdfSample> heldout = HeldOutSamples(material, options.samples, options.seed);
   const HeldOutErrors errors = MeasureErrors(heldout, fit);
   const ColorErrors colors = MeasureColorErrors(heldout, fit);
   const Reciprocity reciprocity = MeasureReciprocity(fit);
   const Energy energy = MeasureEnergy(fit);
-  const Energy of_material = MeasureEnergy(material, {.last_angle = kLastAngle});
+  const Energy of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
@@ -57,24 +57,24 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
 
 std::string MeasuresText(const nlohmann::ordered_json& measures) {
   constexpr std::pair<const char*, const char*> kMeanings[] = {
-      {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6), held-out samples"},
-      {"rmse", "root mean square error of f cos, 1/sr, same samples"},
+      {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
+      {"rmse", "root mean square error of f cos, 1/sr"},
       {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
       {"hcl", "Helmholtz continuity loss (eq. 9)"},
-      {"max_directional_albedo", "over all incident directions; more than 1 makes energy"},
-      {"energy", "certified if at most 1 + 1e-6, by a dense quadrature of its own"},
+      {"max_directional_albedo", "over all incident directions; above 1 the fit creates energy"},
+      {"energy", "certified if max_directional_albedo is at most 1 + 1e-6"},
       {"eal", "energy amplification loss (eq. 5), sr"},
       {"material_max_directional_albedo", "of the material itself, up to 85 degrees"},
-      {"material_energy", "if above 1, a fit that conserves energy can't follow it"},
+      {"material_energy", "above 1, no fit that conserves energy can equal the material"},
       {"chromaticity_error", "mean |log1p(|f cos|^2) - log1p(|f^ cos|^2)| (eq. 7)"},
-      {"delta_e_mean", "CIE Delta E 2000 of the lit colour, pi f cos cut to [0, 1], same samples"},
+      {"delta_e_mean", "mean CIE Delta E 2000 of the lit colour, pi f cos cut to [0, 1]"},
       {"delta_e_p95", "its 95th percentile; about 1 is just visible"},
       {"dark_hue_chroma_mean",
        "sqrt(da^2 + db^2) in CIELAB where the lit luminance is at most 0.1"},
       {"dark_hue_chroma_p95", "its 95th percentile"},
       {"parameters", "numbers that the fit stores"},
-      {"samples", "held-out samples"},
-      {"dark_samples", "those of a lit luminance of at most 0.1"}};
+      {"samples", "number of held-out samples"},
+      {"dark_samples", "number of those with a lit luminance of at most 0.1"}};
   std::ostringstream text;
   for (const auto& [key, meaning] : kMeanings) {
     const auto& value = measures.at(key);

@@ -14,6 +14,7 @@
 #include "base/timer.h"
 #include "models/analytic_residual.h"
 #include "models/analytic_starts.h"
+#include "models/fit_analytic_fields.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
@@ -127,20 +128,27 @@ Candidate FitLobes(const AnalyticFitter& fitter, const AnalyticFitOptions& optio
 
 }  // namespace
 
+Fields AnalyticFitFields(AnalyticFitOptions* options) {
+  Fields fields;
+  fields.Group("The fit");
+  fields.AddCommon(Integer("lobes", &options->lobes, Between(1, kMostLobes),
+                           "number of lobes of the model, 1 or 2"));
+  fields.Add(Number("loss_scale", &options->loss_scale, Above(0.0),
+                    "residual at which the robust loss turns from square to linear"));
+  fields.Add(Integer("first_samples", &options->first_samples, AtLeast(1),
+                     "samples that the starts are compared on"));
+  fields.Add(Integer("starts", &options->starts, AtLeast(1),
+                     "starting points, from narrow lobes to wide ones; the best ones go on"));
+  fields.AddCommon(Integer("max_iterations", &options->max_iterations, AtLeast(1),
+                           "maximum number of iterations"));
+  fields.Add(Number("function_tolerance", &options->function_tolerance, AtLeast(0.0),
+                    "stop when an iteration lowers the cost by a smaller part"));
+  return fields;
+}
+
 void AnalyticFitOptions::Validate() const {
-  const auto at_least_1 = [](const char* field, auto value) {
-    if (value < 1) Fail(field, " = ", value, "; must be >= 1");
-  };
-  if (lobes < 1 || lobes > kMostLobes) Fail("lobes = ", lobes, "; must be 1 to ", kMostLobes);
-  if (!(loss_scale > 0.0) || !std::isfinite(loss_scale)) {
-    Fail("loss_scale = ", loss_scale, "; must be finite and > 0");
-  }
-  at_least_1("first_samples", first_samples);
-  at_least_1("starts", starts);
-  at_least_1("max_iterations", max_iterations);
-  if (!(function_tolerance >= 0.0)) {
-    Fail("function_tolerance = ", function_tolerance, "; must be >= 0");
-  }
+  AnalyticFitOptions copy = *this;
+  AnalyticFitFields(&copy).Check();
   if (threads < 0) Fail("threads = ", threads, "; must be >= 0");
 }
 

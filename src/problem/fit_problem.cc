@@ -54,6 +54,7 @@ void FitProblem::Validate() const {
   NetworkFields(&copy.network).Check();
   TermFields(&copy.terms).Check();
   SamplingFields(&copy.sampling).Check();
+  SceneFields(&copy.sampling).Check();
   Shape();
   bool has_sample_term = false;
   for (const WeightedTerm& term : terms.weights) {

@@ -66,9 +66,10 @@ Fields NetworkFields(NetworkOptions* network) {
                                 "inputs of the network; auto: what suits the material"));
   fields.AddCommon(Integers("hidden", &network->hidden, Between(1, NetworkShape::kLargestLayer),
                             "sizes of the hidden layers"));
-  fields.Add(Choice("activation", &network->activation, kActivations, "unit of the hidden layers"));
+  fields.Add(
+      Choice("activation", &network->activation, kActivations, "function of the hidden units"));
   fields.Add(Choice("initialization", &network->initialization, kInitializations,
-                    "random weights to start from"));
+                    "distribution of the initial weights"));
   return fields;
 }
 
@@ -78,36 +79,44 @@ Fields TermFields(TermOptions* terms) {
   fields.AddCommon(Custom(
       "terms", [terms](std::string_view text) { terms->weights = ParseTerms(text); },
       [terms] { return PrintTerms(terms->weights); }, [terms] { CheckTerms(terms->weights); },
-      "terms of the cost, each NAME or NAME:WEIGHT: " + TermsHelp()));
+      "terms of the cost, separated by commas, each NAME or NAME:WEIGHT: " + TermsHelp()));
   fields.Add(Choice("loss", &terms->loss, kLosses,
-                    "robust loss of the terms over samples; absolute is the papers' own sum, for "
-                    "solvers that need no squares"));
+                    "loss of the terms over samples; absolute: the papers' own sum, for solvers "
+                    "that need no squares"));
   fields.Add(Number("loss_scale", &terms->loss_scale, Above(0.0),
                     "residual at which soft_l1 turns from square to linear"));
   fields.Add(Integer("energy_strata", &terms->energy_strata, Between(1, 1024),
-                     "values of theta_i that the energy term begins with"));
+                     "number of theta_i in the energy term, at first"));
   fields.Add(Integer("energy_azimuths", &terms->energy_azimuths, Between(1, 1024),
-                     "values of phi_i with each theta_i, for anisotropic encodings"));
+                     "number of phi_i with each theta_i, for anisotropic encodings"));
   fields.Add(Integer("energy_theta", &terms->energy_theta, Between(2, 1024),
-                     "elevations of the half vector in the energy term's quadrature"));
+                     "number of theta_h in the energy term's quadrature"));
   fields.Add(Integer("energy_phi", &terms->energy_phi, Between(2, 1024),
-                     "azimuths of the half vector in the energy term's quadrature"));
+                     "number of phi_h in the energy term's quadrature"));
   fields.Add(Switch("energy_skip", &terms->energy_skip,
-                    "look only now and then at theta_i whose albedo is far below 1"));
+                    "evaluate angles whose albedo is far below 1 only now and then"));
   return fields;
 }
 
 Fields SamplingFields(SamplingOptions* sampling) {
   Fields fields;
   fields.Group("The samples");
-  fields.Add(Choice("sampling", &sampling->angles, kSamplings,
-                    "training angles; highlight: half of them near the mirror direction"));
-  fields.AddCommon(
-      Integer("samples", &sampling->samples, Between(1, kMaxSamples), "training samples, at most"));
+  fields.Add(
+      Choice("sampling", &sampling->angles, kSamplings,
+             "how training angles are drawn; highlight: half of them near the mirror direction"));
+  fields.AddCommon(Integer("samples", &sampling->samples, Between(1, kMaxSamples),
+                           "maximum number of training samples"));
+  fields.AddCommon(Integer("seed", &sampling->seed, AtLeast(0),
+                           "seed of the samples and of a network's initial weights"));
+  return fields;
+}
+
+Fields SceneFields(SamplingOptions* sampling) {
+  Fields fields;
+  fields.Group("The samples of a scene");
   fields.Add(Number("scene_floor", &sampling->asked_floor, Between(0.0, 1.0),
-                    "where a scene asks for samples: the part that --sampling draws all the same"));
-  fields.AddCommon(
-      Integer("seed", &sampling->seed, AtLeast(0), "of the samples and the initial weights"));
+                    "part of the samples that --sampling draws; the others are drawn at the angles "
+                    "at which the scene shows the material"));
   return fields;
 }
 

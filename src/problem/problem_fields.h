@@ -11,4 +11,7 @@ Fields NetworkFields(NetworkOptions* network);
 Fields TermFields(TermOptions* terms);
 Fields SamplingFields(SamplingOptions* sampling);
 
+// Of a fit to a material as a scene shows it, besides the others.
+Fields SceneFields(SamplingOptions* sampling);
+
 }  // namespace pbnbrdf

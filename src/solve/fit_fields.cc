@@ -10,7 +10,7 @@ namespace {
 std::string SolversHelp() {
   std::string text;
   for (const Solver& solver : Solvers()) {
-    text += StrCat(text.empty() ? "" : "; ", solver.name, ", ", solver.help);
+    text += StrCat(text.empty() ? "" : " | ", solver.name, " (", solver.help, ")");
   }
   return text;
 }
@@ -25,27 +25,31 @@ Fields OptionFields(FitOptions* options) {
       "solver", [options](std::string_view text) { options->solver = FindSolver(text).name; },
       [options] { return options->solver; }, [options] { FindSolver(options->solver); },
       SolversHelp()));
-  fields.Add(Choice("precision", &options->precision, kPrecisions, "of the network's passes"));
+  fields.Add(Choice("precision", &options->precision, kPrecisions,
+                    "floating-point precision of the network"));
   fields.Add(Integer("first_samples", &schedule->first_samples, AtLeast(1),
-                     "training samples to start with"));
-  fields.Add(Number("growth", &schedule->growth, Above(1.0),
-                    "factor of training samples each time that the cost falls slowly"));
-  fields.Add(Integer("starts", &schedule->starts, AtLeast(1),
-                     "try so many random weights and go on with the best"));
-  fields.Add(Integer("curvature_samples", &schedule->curvature_samples, AtLeast(1),
-                     "lm: samples that J'J is summed over, others each time"));
-  fields.AddCommon(Integer("max_iterations", &schedule->max_iterations, AtLeast(0),
-                           "iterations (adam: epochs), and as many again with the energy term"));
-  fields.AddCommon(Number("max_seconds", &schedule->max_seconds, Above(0.0), "time for the fit"));
-  fields.Add(Number("function_tolerance", &schedule->function_tolerance, AtLeast(0.0),
-                    "a stage ends when an iteration lowers the cost by a smaller part"));
+                     "training samples to start with; --samples or more: all of them"));
   fields.Add(
-      Switch("certify_energy", &options->certify_energy,
-             "end with no directional albedo above 1, lowering the whole network if need be"));
-  fields.Add(Integer("batch", &options->adam.batch, AtLeast(1), "adam: samples a step"));
+      Number("growth", &schedule->growth, Above(1.0),
+             "factor by which the training samples grow each time that the cost falls slowly"));
+  fields.Add(Integer("starts", &schedule->starts, AtLeast(1),
+                     "number of random initial weights to try; the fit goes on with the best"));
+  fields.Add(Integer("curvature_samples", &schedule->curvature_samples, AtLeast(1),
+                     "lm: samples that J'J is computed from, others in each iteration"));
+  fields.AddCommon(Integer(
+      "max_iterations", &schedule->max_iterations, AtLeast(0),
+      "maximum number of iterations (adam: epochs), and as many again with the energy term"));
+  fields.AddCommon(Number("max_seconds", &schedule->max_seconds, Above(0.0),
+                          "maximum time for the fit, seconds"));
+  fields.Add(Number("function_tolerance", &schedule->function_tolerance, AtLeast(0.0),
+                    "stop when an iteration lowers the cost by a smaller part than this"));
+  fields.Add(Switch("certify_energy", &options->certify_energy,
+                    "with the energy term: make sure that no directional albedo is above 1, if "
+                    "need be by lowering the whole network"));
+  fields.Add(Integer("batch", &options->adam.batch, AtLeast(1), "adam: samples in a step"));
   fields.Add(Number("learning_rate", &options->adam.learning_rate, Above(0.0), "adam: step size"));
   fields.Add(Integer("energy_angles", &options->adam.energy_angles, Between(1, 1024),
-                     "adam: random incident angles a step of the energy term"));
+                     "adam: random incident angles of the energy term in a step"));
   return fields;
 }
 

@@ -57,7 +57,7 @@ constexpr Solver kSolvers[] = {
      {.needs_squares = false, .is_stochastic = true},
      RunAdam},
     {"autodiff",
-     "ceres_lm on jets through the whole network, the slow reference",
+     "ceres_lm on jets through the whole network: the slow reference",
      {.max_weights = kMaxSecondOrderWeights},
      RunAutodiff},
 };

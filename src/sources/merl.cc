@@ -127,7 +127,7 @@ MerlBrdf MerlBrdf::Tabulate(const Brdf& source) {
   if (!source.IsIsotropic()) {
     Fail(
         "anisotropic, and a MERL table has no phi_h: fit it as it is, or, for the nearest "
-        "isotropic table, tabulate a fit with --encoding=merl");
+        "isotropic table, export a fit made with --encoding=merl");
   }
   std::vector<double> planes(3 * kBins, -1.0);
   std::vector<DirectionPair> pairs(kPhiD);

@@ -1,4 +1,4 @@
-// pbnbrdf fit --scene, and render --fits.
+// pbnbrdf fit-scene, and render --fits.
 #include <filesystem>
 
 #include "cli/cli_fixture.h"
@@ -49,7 +49,8 @@ class CliFitScene : public Cli {
 };
 
 TEST_F(CliFitScene, FitsWhatTheSceneShows) {
-  const Result result = Run("fit" + Write(Scene()) + kQuickFit + "--out_dir=" + Path("fits/of/it"));
+  const Result result =
+      Run("fit-scene" + Write(Scene()) + kQuickFit + "--out_dir=" + Path("fits/of/it"));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("3 done; skipped: 1 unreferenced, 1 not_reached"));
   const json summary = Summary("fits/of/it");
@@ -78,9 +79,37 @@ TEST_F(CliFitScene, FitsWhatTheSceneShows) {
   EXPECT_THAT(network.metadata().at("problem"), HasSubstr("--scene_floor=0.5"));
 }
 
+// Not what the flags ask for: the dot has a small network and few samples.
+TEST_F(CliFitScene, RecordsWhatWasFitted) {
+  const Result result = Run("fit-scene" + Write(Scene()) + " --samples=9000 --max_iterations=2 " +
+                            "--terms=log --out_dir=" + Path("fits"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::map<std::string, std::string> problems;
+  for (const json& fit : Summary("fits")["fits"]) {
+    if (fit.contains("problem")) problems[fit["material"]] = fit["problem"];
+  }
+  ASSERT_EQ(problems.size(), 3u);
+  EXPECT_THAT(problems["dot"], HasSubstr("--hidden=8,8\n"));
+  EXPECT_THAT(problems["dot"], HasSubstr("--samples=6000\n"));
+  EXPECT_THAT(problems["gold"], HasSubstr("--hidden=21,21\n"));
+  EXPECT_THAT(problems["gold"], HasSubstr("--samples=9000\n"));
+  for (const auto& [name, problem] : problems) {
+    EXPECT_THAT(problem, HasSubstr("--encoding=merl\n"));
+    EXPECT_THAT(problem, HasSubstr("--scene=" + Path("scene.json") + "\n"));
+    EXPECT_EQ(NeuralBrdf::Read(Path("fits/") + name + ".safetensors").metadata().at("problem"),
+              problem);
+  }
+  WriteBytes(Path("dot.flags"), problems["dot"]);
+  ASSERT_EQ(Run("fit-scene --quiet --flagfile=" + Path("dot.flags") + " --out_dir=" + Path("again"))
+                .status,
+            0);
+  EXPECT_EQ(NeuralBrdf::Read(Path("again/dot.safetensors")).weights(),
+            NeuralBrdf::Read(Path("fits/dot.safetensors")).weights());
+}
+
 TEST_F(CliFitScene, WithoutSkippingAllAreFittedAndTheImageIsTheSame) {
   const std::string scene = Write(Scene());
-  const std::string fit = "fit" + scene + kQuickFit;
+  const std::string fit = "fit-scene" + scene + kQuickFit;
   ASSERT_EQ(Run(fit + "--out_dir=" + Path("few")).status, 0);
   const Result all = Run(fit + "--no_skip --out_dir=" + Path("all"));
   ASSERT_EQ(all.status, 0) << all.err;
@@ -95,7 +124,7 @@ TEST_F(CliFitScene, WithoutSkippingAllAreFittedAndTheImageIsTheSame) {
 }
 
 TEST_F(CliFitScene, SamplesComeFromTheScene) {
-  const std::string fit = "fit" + Write(Scene()) + kQuickFit;
+  const std::string fit = "fit-scene" + Write(Scene()) + kQuickFit;
   ASSERT_EQ(Run(fit + "--out_dir=" + Path("a")).status, 0);
   ASSERT_EQ(Run(fit + "--scene_floor=1 --out_dir=" + Path("b")).status, 0);
   ASSERT_EQ(Run("fit --material=builtin:satin-gold" + std::string(kQuickFit) +
@@ -110,26 +139,29 @@ TEST_F(CliFitScene, SamplesComeFromTheScene) {
 }
 
 TEST_F(CliFitScene, RefusesWhatDoesNotGoTogether) {
-  const std::string fit = "fit" + Write(Scene());
+  const std::string fit = "fit-scene" + Write(Scene());
   ExpectError(fit, 2, "--out_dir is required");
   ExpectError(fit + "--out_dir=x --material=builtin:satin-gold", 2,
-              "--material doesn't go with --scene");
+              "--material is not a flag of 'fit-scene'");
   ExpectError(fit + "--out_dir=x --scene_floor=1.5", 2, "--scene_floor = 1.5; must be 0 to 1");
   ExpectError("fit --material=builtin:satin-gold --out=a.safetensors --no_skip", 2,
-              "--no_skip is a flag of --scene");
+              "--no_skip is not a flag of 'fit'");
+  ExpectError("fit --material=builtin:satin-gold --out=a.safetensors --scene_floor=1", 2,
+              "--scene_floor is not a flag of 'fit'");
+  ExpectError("fit-scene --out_dir=x", 2, "--scene is required");
 }
 
 TEST_F(CliFitScene, NamesTheMaterialAtFault) {
   json scene = Scene();
   scene["materials"]["gold"]["source"] = "gone.binary";
-  ExpectError("fit" + Write(scene) + "--out_dir=" + Path("fits"), 1,
+  ExpectError("fit-scene" + Write(scene) + "--out_dir=" + Path("fits"), 1,
               "scene.json: materials.gold: ");
   scene = Scene();
   scene["materials"]["a/b"] = {{"source", "builtin:satin-gold"}};
-  ExpectError("fit" + Write(scene) + "--out_dir=" + Path("fits"), 1,
-              "materials.a/b: the name can't be that of a file");
+  ExpectError("fit-scene" + Write(scene) + "--out_dir=" + Path("fits"), 1,
+              "materials.a/b: a file can't have this name");
   ExpectError("render" + Write(Scene()) + "--fits=" + Path("none") + " --out=" + Path("out"), 1,
-              "has none of the scene's materials");
+              "has no NAME.safetensors for any material NAME of the scene");
 }
 
 }  // namespace

@@ -151,11 +151,12 @@ TEST_F(CliRender, Errors) {
   ExpectError(render + "--estimator=mi" + out, 2,
               "--estimator=mi is not one of mis | brdf | light");
   ExpectError(render + "--material=surface" + out, 2, "of the form NAME=SOURCE");
-  ExpectError(render + "--material='surface=ggx:alpha=0.3;surface=x'" + out, 2, "is there twice");
-  ExpectError(render + "--png=" + Path("out") + out, 2, "is to be two outputs at once");
-  ExpectError(render + "--summary=" + Path("out") + out, 2, "is to be two outputs at once");
+  ExpectError(render + "--material='surface=ggx:alpha=0.3;surface=x'" + out, 2, "is given twice");
+  ExpectError(render + "--png=" + Path("out") + out, 2, "--out and --png name the same file");
+  ExpectError(render + "--summary=" + Path("out") + out, 2,
+              "--out and --summary name the same file");
   ExpectError(render + "--summary=" + Path("s.json") + " --out=-", 2,
-              "--summary: --out must be a file, too");
+              "--summary: --out must be a file");
   ExpectError(render + "--material=surfac=ggx:alpha=0.3" + out, 1,
               "sphere.json: materials: there is no 'surfac'; did you mean 'surface'?");
   ExpectError(render + "--material=surface=none.binary" + out, 1,

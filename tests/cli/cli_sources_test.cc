@@ -20,16 +20,16 @@ TEST_F(CliSources, BadMaterialsExitWith1) {
   ExpectError(fit(Path("short.binary")), 1, "its header says 0 x 0 x 0, such as 90 x 90 x 180");
   WriteBytes(Path("bad.safetensors"), std::string(100, '\xff'));
   ExpectError(fit(Path("bad.safetensors")), 1, "bad.safetensors: not a safetensors file");
-  ExpectError("tabulate --material=" + Path("none.binary") + " --out=" + Path("out"), 1,
+  ExpectError("export --format=merl --material=" + Path("none.binary") + " --out=" + Path("out"), 1,
               "no such file");
-  ExpectError("eval --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1,
+  ExpectError("measure --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1,
               "no such file");
   ExpectError("info " + Path("none.binary"), 1, "no such file");
 }
 
 TEST_F(CliSources, AModelFitIsASourceAndAFit) {
   const std::string material = " --material=builtin:blue-plastic";
-  const Result fit = Run("fit --model=ggx --samples=500 --starts=3 --seed=4" + material +
+  const Result fit = Run("fit-model --model=ggx --samples=500 --starts=3 --seed=4" + material +
                          " --out=" + Path("a.json"));
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_EQ(fit.err, "");
@@ -43,19 +43,26 @@ TEST_F(CliSources, AModelFitIsASourceAndAFit) {
   EXPECT_EQ(file["version"], Split(Split(Run("--version").out, '\n')[0], ' ')[1]);
   EXPECT_NEAR(file["parameters"]["alpha_x"], 0.05, 0.002);  // blue-plastic's
   EXPECT_LT(file["errors"]["mean_abs_log_error"], 0.01);
+  WriteBytes(Path("again.flags"), file["problem"]);
+  ASSERT_EQ(Run("fit-model --quiet --flagfile=" + Path("again.flags") + " --out=" + Path("b.json"))
+                .status,
+            0);
+  EXPECT_EQ(json::parse(ReadFile(Path("b.json"), 1 << 20))["parameters"], file["parameters"]);
 
-  const Result eval = Run("eval --json --eval_samples=2000 --fit=" + Path("a.json") + material);
-  ASSERT_EQ(eval.status, 0) << eval.err;
-  const json measures = json::parse(eval.out);
+  const Result measured = Run("measure --json --samples=2000 --fit=" + Path("a.json") + material);
+  ASSERT_EQ(measured.status, 0) << measured.err;
+  const json measures = json::parse(measured.out);
   EXPECT_EQ(measures["parameters"], 11);
   EXPECT_LT(measures["mean_abs_log_error"], 0.01);
   EXPECT_EQ(measures["hrl"], 0.0);
 
   WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.3,0,0.5,1\n");
   const std::string directions = " --out=- --directions=" + Path("pairs.csv");
-  EXPECT_EQ(Run("values --material=" + Path("a.json") + directions).out,
-            Run("values --material=" + std::string(file["source"]) + directions).out);
-  EXPECT_EQ(Run("tabulate --material=" + Path("a.json") + " --out=" + Path("a.binary")).status, 0);
+  EXPECT_EQ(Run("eval --material=" + Path("a.json") + directions).out,
+            Run("eval --material=" + std::string(file["source"]) + directions).out);
+  EXPECT_EQ(Run("export --format=merl --material=" + Path("a.json") + " --out=" + Path("a.binary"))
+                .status,
+            0);
   const Result info = Run("info " + Path("a.json"));
   EXPECT_THAT(info.out, HasSubstr("Walter et al. 2007"));
   EXPECT_THAT(info.out, HasSubstr("  seed: 4\n"));
@@ -65,13 +72,13 @@ TEST_F(CliSources, AModelFitIsASourceAndAFit) {
 }
 
 TEST_F(CliSources, EveryModelFits) {
-  const std::string listed = Run("info models:").out, help = Run("fit --help").out;
+  const std::string listed = Run("info models:").out, help = Run("fit-model --help").out;
   for (const char* model : {"lambert", "oren_nayar", "phong", "blinn_phong", "lafortune", "ward",
                             "ward_duer", "ward_bounded", "cook_torrance", "ggx", "abc", "disney"}) {
     EXPECT_THAT(listed, HasSubstr(StrCat("\n", model, ": (")));
     EXPECT_THAT(help, HasSubstr(StrCat(" ", model)));
     const std::string out = Path(StrCat(model, ".json"));
-    const Result fit = Run(StrCat("fit --quiet --samples=200 --starts=2 --max_iterations=5 ",
+    const Result fit = Run(StrCat("fit-model --quiet --samples=200 --starts=2 --max_iterations=5 ",
                                   "--lobes=2 --model=", model,
                                   " --material=builtin:red-satin-plastic --out=", out));
     EXPECT_EQ(fit.status, 0) << fit.err;
@@ -81,20 +88,21 @@ TEST_F(CliSources, EveryModelFits) {
 }
 
 TEST_F(CliSources, ModelMistakesAreNamed) {
-  const std::string fit = "fit --material=builtin:blue-plastic --out=" + Path("out.json");
+  const std::string fit = "fit-model --material=builtin:blue-plastic --out=" + Path("out.json");
+  ExpectError(fit, 2, "--model is required");
   ExpectError(fit + " --model=gxg", 2, "--model 'gxg' is unknown; did you mean ggx?");
   ExpectError(fit + " --model=ggx --lobes=3", 2, "--lobes = 3; must be 1 to 2");
-  ExpectError(fit + " --model=ggx --samples=0", 2, "--samples = 0; must be >= 1");
-  ExpectError(fit + " --model=ggx --hidden=5", 2, "--hidden is a flag of networks");
-  ExpectError(fit + " --model=ggx --trace=" + Path("t.csv"), 2, "--trace is a flag of networks");
-  ExpectError(fit + " --lobes=2", 2, "--lobes is a flag of --model");
-  ExpectError("fit --model=ggx --material=builtin:blue-plastic --out=" + Path("out"), 2,
+  ExpectError(fit + " --model=ggx --samples=0", 2, "--samples = 0; must be 1 to");
+  ExpectError(fit + " --model=ggx --hidden=5", 2, "--hidden is not a flag of 'fit-model'");
+  ExpectError(fit + " --model=ggx --trace=" + Path("t.csv"), 2,
+              "--trace is not a flag of 'fit-model'");
+  ExpectError("fit-model --model=ggx --material=builtin:blue-plastic --out=" + Path("out"), 2,
               "out: a model is written to a FILE.json");
   EXPECT_FALSE(std::filesystem::exists(Path("out.json")));
   ExpectError("info ggx:alpa=0.1", 1, "ggx: no parameter 'alpa'; did you mean alpha?");
   ExpectError("info gxg:alpha=0.1", 1, "model 'gxg' is unknown; did you mean ggx?");
   WriteBytes(Path("bad.json"), "{}");
-  ExpectError("eval --material=builtin:blue-plastic --fit=" + Path("bad.json"), 1,
+  ExpectError("measure --material=builtin:blue-plastic --fit=" + Path("bad.json"), 1,
               "bad.json: not an analytic model");
 }
 
@@ -103,7 +111,9 @@ TEST_F(CliSources, ANetworkIsAMaterialToo) {
       Run("fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors")).status,
       0);
   EXPECT_EQ(
-      Run("tabulate --material=" + Path("a.safetensors") + " --out=" + Path("a.binary")).status, 0);
+      Run("export --format=merl --material=" + Path("a.safetensors") + " --out=" + Path("a.binary"))
+          .status,
+      0);
   EXPECT_THAT(Run("info " + Path("a.binary")).out, HasSubstr("1111326 of 1458000 bins valid"));
   EXPECT_EQ(
       Run("fit --material=" + Path("a.safetensors") + kQuick + "--out=" + Path("b.safetensors"))
@@ -122,29 +132,30 @@ TEST_F(CliSources, APublishedNetworkIsAMaterialAndAFit) {
   const std::string network = Path("fc1.npy");
   EXPECT_THAT(Run("info " + network).out,
               HasSubstr("neural BRDF 6-1-1-3 relu, cartesian encoding"));
-  EXPECT_EQ(Run("tabulate --material=" + network + " --out=" + Path("a.binary")).status, 0);
-  const Result eval =
-      Run("eval --json --eval_samples=500 --fit=" + network + " --material=" + network);
-  EXPECT_EQ(json::parse(eval.out)["mean_abs_log_error"], 0.0);
+  EXPECT_EQ(Run("export --format=merl --material=" + network + " --out=" + Path("a.binary")).status,
+            0);
+  const Result measured =
+      Run("measure --json --samples=500 --fit=" + network + " --material=" + network);
+  EXPECT_EQ(json::parse(measured.out)["mean_abs_log_error"], 0.0);
   EXPECT_EQ(Run("fit --material=" + network + kQuick + "--out=" + Path("b.safetensors")).status, 0);
   WriteBytes(Path("bad.h5"), "x");
   ExpectError("info " + Path("bad.h5"), 1, "bad.h5: not an HDF5 file");
 }
 
-// Every command takes it: info, fit, eval, tabulate and values at one pair.
+// Every command takes it: info, fit, measure, export and eval at one pair.
 TEST_F(CliSources, ARglFileIsAMaterial) {
   WriteBytes(Path("a.bsdf"), ConstantFile(1, {0.8f, 0.4f, 0.2f}).Bytes());
   const std::string material = " --material=" + Path("a.bsdf");
   EXPECT_THAT(Run("info " + Path("a.bsdf")).out, HasSubstr("RGL measurement, isotropic, RGB"));
   ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
-  const Result eval =
-      Run("eval --json --eval_samples=500 --fit=" + Path("a.safetensors") + material);
-  EXPECT_EQ(json::parse(eval.out)["samples"], 500);
-  ASSERT_EQ(Run("tabulate" + material + " --out=" + Path("a.binary")).status, 0);
+  const Result measured =
+      Run("measure --json --samples=500 --fit=" + Path("a.safetensors") + material);
+  EXPECT_EQ(json::parse(measured.out)["samples"], 500);
+  ASSERT_EQ(Run("export --format=merl" + material + " --out=" + Path("a.binary")).status, 0);
   // The table is reciprocal, this file isn't: equal angles.
   WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.4,0,0.4,1\n");
   for (const std::string& source : {material, " --material=" + Path("a.binary")}) {
-    const Result values = Run("values" + source + " --out=- --directions=" + Path("pairs.csv"));
+    const Result values = Run("eval" + source + " --out=- --directions=" + Path("pairs.csv"));
     const std::vector<std::string> row = Split(Split(values.out, '\n')[1], ',');
     EXPECT_NEAR(ParseNumber("r", row[4]), 0.8 / (4 * kPi * std::cos(0.4)), 1e-4);
     EXPECT_NEAR(ParseNumber("b", row[6]), 0.2 / (4 * kPi * std::cos(0.4)), 1e-4);
@@ -153,7 +164,7 @@ TEST_F(CliSources, ARglFileIsAMaterial) {
   ExpectError("info " + Path("bad.bsdf"), 1, "bad.bsdf: not a tensor file");
 }
 
-// A Lambertian of albedo 0.5, in one channel, by angles or as what `values` itself writes.
+// A Lambertian of albedo 0.5, in one channel, by angles or as what `eval` itself writes.
 TEST_F(CliSources, ScatteredMeasurementsAreAMaterial) {
   std::string csv = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n";
   for (int theta_i = 5; theta_i < 85; theta_i += 10) {
@@ -175,16 +186,16 @@ TEST_F(CliSources, ScatteredMeasurementsAreAMaterial) {
   const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
   EXPECT_EQ(summary["samples"], 864 / 8);  // all that are held out
   EXPECT_LT(summary["mean_abs_log_error"], 0.001);
-  const Result eval = Run("eval --json --fit=" + Path("a.safetensors") + material);
-  EXPECT_EQ(json::parse(eval.out)["samples"], 864 / 8);
-  EXPECT_EQ(Run("tabulate" + material + " --out=" + Path("a.binary")).status, 0);
+  const Result measured = Run("measure --json --fit=" + Path("a.safetensors") + material);
+  EXPECT_EQ(json::parse(measured.out)["samples"], 864 / 8);
+  EXPECT_EQ(Run("export --format=merl" + material + " --out=" + Path("a.binary")).status, 0);
 
   WriteBytes(Path("pairs.csv"),
              "theta_i,phi_i,theta_o,phi_o\n0.3,0,0.5,1\n0.2,0,0.5,1\n0.1,0,0.5,1\n");
-  ASSERT_EQ(Run("values" + material + " --out=" + Path("values.csv") +
-                " --directions=" + Path("pairs.csv"))
-                .status,
-            0);
+  ASSERT_EQ(
+      Run("eval" + material + " --out=" + Path("values.csv") + " --directions=" + Path("pairs.csv"))
+          .status,
+      0);
   EXPECT_THAT(Run("info " + Path("values.csv")).out, HasSubstr("RGB, 3 measurements"));
 
   ExpectError("fit" + material + " --terms=log,chromaticity --out=" + Path("out"), 1,
@@ -194,7 +205,7 @@ TEST_F(CliSources, ScatteredMeasurementsAreAMaterial) {
   WriteBytes(Path("bad.csv"), csv + "5,0,5");
   ExpectError("info " + Path("bad.csv"), 1, "bad.csv: line 866: the last line has no end");
   WriteBytes(Path("bad.alta"), "#DIM 1 1\n");
-  ExpectError("tabulate --material=" + Path("bad.alta") + " --out=" + Path("out"), 1,
+  ExpectError("export --format=merl --material=" + Path("bad.alta") + " --out=" + Path("out"), 1,
               "bad.alta: no measurements in it");
 }
 
@@ -203,13 +214,13 @@ TEST_F(CliSources, EveryCommandScalesTheMaterial) {
   const std::string half = " --material=builtin:spectralon --scale_to_albedo=0.495 ";
   WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.3,0,0.5,1\n");
   const auto value = [&](const std::string& material) {
-    const Result result = Run("values" + material + " --out=- --directions=" + Path("pairs.csv"));
+    const Result result = Run("eval" + material + " --out=- --directions=" + Path("pairs.csv"));
     EXPECT_EQ(result.status, 0) << result.err;
     return ParseNumber("b", Split(Split(result.out, '\n')[1], ',').back());
   };
   EXPECT_NEAR(value(half), 0.495 / kPi, 1e-4);
 
-  ASSERT_EQ(Run("tabulate" + half + "--out=" + Path("half.binary")).status, 0);
+  ASSERT_EQ(Run("export --format=merl" + half + "--out=" + Path("half.binary")).status, 0);
   EXPECT_NEAR(value(" --material=" + Path("half.binary")), 0.495 / kPi, 1e-4);
 
   ASSERT_EQ(Run("fit" + half + kQuick + "--max_iterations=30 --out=" + Path("a.safetensors") +
@@ -223,9 +234,9 @@ TEST_F(CliSources, EveryCommandScalesTheMaterial) {
   EXPECT_NEAR(value(" --material=" + Path("a.safetensors")), 0.495 / kPi, 2e-3);
 
   const auto error = [&](const std::string& material) {
-    const Result eval =
-        Run("eval --json --eval_samples=500 --fit=" + Path("a.safetensors") + material);
-    return json::parse(eval.out)["mean_abs_log_error"].get<double>();
+    const Result measured =
+        Run("measure --json --samples=500 --fit=" + Path("a.safetensors") + material);
+    return json::parse(measured.out)["mean_abs_log_error"].get<double>();
   };
   EXPECT_LT(error(half), 0.003);
   EXPECT_GT(error(" --material=builtin:spectralon"), 0.02);
@@ -238,11 +249,11 @@ TEST_F(CliSources, MaterialsThatCannotBeScaledAreNamed) {
              "black,,r,0,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n"
              "black,,g,0,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n"
              "black,,b,0,0,0.05,0.5,0.9,0.1,20,2,1e-7,30,0.1,0.1\n");
-  ExpectError("tabulate --material=sgd:" + Path("black.csv") + "#black" + scale, 1,
+  ExpectError("export --format=merl --material=sgd:" + Path("black.csv") + "#black" + scale, 1,
               "black.csv#black: can't be scaled to an albedo of 0.99");
-  for (const char* command : {"tabulate", "values --directions=-", "eval --fit=x"}) {
+  for (const char* command : {"export --format=merl", "eval --directions=-", "measure --fit=x"}) {
     ExpectError(StrCat(command, " --material=builtin:satin-gold --scale_to_albedo=-1") +
-                    (command[0] == 'e' ? "" : " --out=" + Path("out")),
+                    (command[0] == 'm' ? "" : " --out=" + Path("out")),
                 2, "--scale_to_albedo = -1; must be finite and >= 0");
   }
 }

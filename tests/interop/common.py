@@ -94,11 +94,11 @@ def directions(count, seed=3):
 
 
 def library_values(source, wi, wo):
-    """pbnbrdf values at the directions, which it makes of length 1 in double precision."""
+    """pbnbrdf eval at the directions, which it makes of length 1 in double precision."""
     pairs, values = path("pairs.csv"), path("values.csv")
     np.savetxt(pairs, np.hstack([wi, wo]).astype(np.float64), delimiter=",", fmt="%.17g",
                header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z", comments="")
-    program("values", f"--material={source}", f"--directions={pairs}", f"--out={values}")
+    program("eval", f"--material={source}", f"--directions={pairs}", f"--out={values}")
     return np.loadtxt(values, delimiter=",", skiprows=1)[:, -3:]
 
 

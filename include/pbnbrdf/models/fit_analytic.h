@@ -16,6 +16,7 @@
 // [1] A. Ngan, F. Durand, W. Matusik. Experimental Analysis of BRDF Models. EGSR 2005.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -24,13 +25,13 @@
 namespace pbnbrdf {
 
 struct AnalyticFitOptions {
-  int lobes = 1;                     // 1 to kMostLobes; models without lobes don't ask
-  double loss_scale = 0.001;         // > 0, |r| at which rho turns from square to linear
-  std::size_t first_samples = 1000;  // >= 1, that the starts see: the first of all
-  int starts = 12;                   // >= 1: from narrow lobes to wide ones; the best ones go on
-  int max_iterations = 100;          // >= 1, of the last stage
-  double function_tolerance = 1e-5;  // stop when |cost change| < function_tolerance * cost
-  int threads = 0;                   // 0: as many as the machine has
+  int lobes = 1;                       // 1 to kMostLobes; models without lobes don't ask
+  double loss_scale = 0.001;           // > 0, |r| at which rho turns from square to linear
+  std::uint64_t first_samples = 1000;  // >= 1, that the starts see: the first of all
+  int starts = 12;                     // >= 1: from narrow lobes to wide ones; the best ones go on
+  int max_iterations = 100;            // >= 1, of the last stage
+  double function_tolerance = 1e-5;    // stop when |cost change| < function_tolerance * cost
+  int threads = 0;                     // 0: as many as the machine has
 
   // Throws Error, naming the field, its value and what it must be.
   void Validate() const;

@@ -1,0 +1,194 @@
+// pbnbrdf fit-scene
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/timer.h"
+#include "commands.h"
+#include "fit_record.h"
+#include "interrupt.h"
+#include "outputs.h"
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/solve/problem_file.h"
+#include "pbnbrdf/sources/open_brdf.h"
+#include "problem/problem_fields.h"
+#include "progress_line.h"
+#include "render_summary.h"
+#include "report.h"
+#include "scene_plan.h"
+#include "solve/fit_fields.h"
+
+namespace pbnbrdf::cli {
+namespace {
+
+const std::vector<SkipReason> kReasons = {SkipReason::kUnreferenced, SkipReason::kNotReached};
+
+struct FitSceneOptions {
+  std::string scene, out_dir, summary;
+  bool no_skip = false, quiet = false;
+  FitSetup setup;
+
+  std::string InFolder(const std::string& file) const {
+    return std::filesystem::path(out_dir) / file;
+  }
+  std::string SummaryFile() const { return summary.empty() ? InFolder("summary.json") : summary; }
+};
+
+Field SceneField(FitSceneOptions* options) {
+  return Text("scene", &options->scene,
+              "scene file (JSON); problems/scenes/README.md describes it");
+}
+
+Fields FitSceneFields(FitSceneOptions* options) {
+  Fields fields;
+  fields.Group("The scene and the files");
+  fields.AddRequired(SceneField(options));
+  fields.AddRequired(Text("out_dir", &options->out_dir,
+                          "folder for the networks, MATERIAL.safetensors, and summary.json"));
+  fields.AddCommon(Text("summary", &options->summary, "another file than OUT_DIR/summary.json"));
+  fields.AddCommon(
+      Switch("no_skip", &options->no_skip, "fit the materials that the image doesn't show, too"));
+  fields.AddCommon(Switch("quiet", &options->quiet, "print nothing"));
+  fields.Add(Integer("threads", &options->setup.options.threads, AtLeast(0),
+                     "threads to use; 0: one for each core"));
+  fields.Add(FitFields(&options->setup.problem, &options->setup.options));
+  fields.Add(SceneFields(&options->setup.problem.sampling));
+  return fields;
+}
+
+// The flags that repeat the fit of one material.
+std::string Flagfile(FitSceneOptions options, const FitProblem& fitted) {
+  options.setup.problem = fitted;
+  return Fields().Add(SceneField(&options)).Lines() + ProblemText(options.setup) +
+         SceneFields(&options.setup.problem.sampling).Lines();
+}
+
+nlohmann::ordered_json PlanJson(const ScenePlan& plan, bool skips) {
+  nlohmann::ordered_json skipped;
+  if (skips) skipped = NameOf(kSkipReasons, *plan.skip_reason);
+  return {{"material", plan.name}, {"source", plan.material.source},
+          {"share", plan.share},   {"sensitivity", plan.sensitivity},
+          {"needed", plan.needed}, {"skipped", skipped},
+          {"why", plan.why}};
+}
+
+std::vector<ScenePlan> PlanFits(const Scene& scene, const FitSceneOptions& options) try {
+  const auto open = [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; };
+  const FitProblem& problem = options.setup.problem;
+  const std::vector<MaterialDemand> demand = MeasureDemand(
+      scene, open, {.seed = problem.sampling.seed, .threads = options.setup.options.threads});
+  std::vector<ScenePlan> plans;
+  for (std::size_t i = 0; i < demand.size(); ++i) {
+    plans.push_back(PlanFit(scene.materials[i], demand[i], problem));
+  }
+  return plans;
+} catch (const Error& error) {
+  Fail(options.scene, ": ", error.what());
+}
+
+Fit FitPlanned(const ScenePlan& plan, const Brdf& material, const FitSceneOptions& options) {
+  const ProgressLine line(options.quiet);
+  FitOptions fit_options = options.setup.options;
+  fit_options.on_iteration = [&](const FitProgress& progress) {
+    line.Show(StrCat(plan.name, "  iteration ", progress.iteration, "  held-out error ",
+                     progress.heldout_error, "  ", SecondsText(progress.seconds)));
+    return !Interrupted();
+  };
+  return FitBrdf(material, plan.problem, fit_options);
+}
+
+// Fits the material and writes its network. Returns what the summary says of it.
+nlohmann::ordered_json RunPlan(const ScenePlan& plan, const FitSceneOptions& options) try {
+  const std::unique_ptr<Brdf> material = plan.material.Open();
+  const Fit fit = FitPlanned(plan, *material, options);
+  const nlohmann::ordered_json measures =
+      MeasureFit(*material, fit.network, fit.network.weights().size());
+  const FitSubject subject = {plan.material, Flagfile(options, fit.problem)};
+  const std::string file = plan.name + ".safetensors";
+  WithMetadata(fit, subject, measures).Write(options.InFolder(file));
+  if (!options.quiet) {
+    std::cout << plan.name << ": " << fit.network.Description() << ", " << fit.summary.seconds
+              << " s; " << plan.why << "\n";
+  }
+  nlohmann::ordered_json json = PlanJson(plan, /*skips=*/false);
+  json["file"] = file;
+  json["hidden"] = fit.problem.network.hidden;
+  json.update(FitSummaryJson(fit, subject, measures));
+  json["material"] = plan.name;
+  return json;
+} catch (const Error& error) {
+  Fail(options.scene, ": materials.", plan.name, ": ", error.what());
+}
+
+// Names that can be files, and a folder to write them to.
+void PrepareOutputs(const Scene& scene, const FitSceneOptions& options) {
+  for (const SceneMaterial& material : scene.materials) {
+    if (material.name.empty() || material.name.find('/') != std::string::npos) {
+      Fail(options.scene, ": materials.", material.name, ": a file can't have this name");
+    }
+  }
+  std::error_code code;
+  std::filesystem::create_directories(options.out_dir, code);
+  CheckWritable(options.InFolder("summary.json"));
+  CheckOutputs({{"summary", options.SummaryFile()}});
+}
+
+int RunFitScene(const FitSceneOptions& options, const Arguments&) {
+  CheckFlags([&] { ValidateFit(options.setup.problem, options.setup.options); });
+  const Scene scene = ReadScene(options.scene);
+  PrepareOutputs(scene, options);
+  CatchInterrupt();
+  const Timer timer;
+  const std::vector<ScenePlan> plans = PlanFits(scene, options);
+  const double demand_seconds = timer.Seconds();
+  Work work;
+  nlohmann::ordered_json fits = nlohmann::ordered_json::array();
+  for (const ScenePlan& plan : plans) {
+    work.needed += plan.needed;
+    const bool skips = plan.skip_reason && !options.no_skip;
+    if (skips) ++work.Skipped(*plan.skip_reason);
+    if (skips || Interrupted()) {
+      fits.push_back(PlanJson(plan, skips));
+      continue;
+    }
+    const ScopedTimer scoped(&work.seconds);
+    fits.push_back(RunPlan(plan, options));
+    ++work.done;
+  }
+  const nlohmann::ordered_json summary = {{"scene", options.scene},
+                                          {"interrupted", Interrupted()},
+                                          {"demand_seconds", demand_seconds},
+                                          {"seconds", timer.Seconds()},
+                                          {"materials", WorkJson(work, kReasons)},
+                                          {"fits", fits},
+                                          {"version", PBNBRDF_VERSION}};
+  WriteFile(options.SummaryFile(), JsonText(summary));
+  if (!options.quiet) std::cout << WorkText("materials", work, kReasons);
+  return 0;
+}
+
+}  // namespace
+
+Command FitSceneCommand() {
+  Command command;
+  command.name = "fit-scene";
+  command.summary = "fits a network to each material that the image of a scene shows";
+  command.usage =
+      "  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
+      "  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr\n";
+  command.notes =
+      "A quick render finds out which materials the image shows, and at which angles. Each of them "
+      "is fitted at these angles, by the flags above, and written to OUT_DIR/NAME.safetensors, "
+      "where "
+      "render --fits=OUT_DIR finds it. A material that hardly changes the image (a change of "
+      "log(1 + f cos) changes it by less than a hundredth of that) gets --hidden=8,8 and at most "
+      "6000 "
+      "samples. A material that the image doesn't show is not fitted.\n"
+      "The summary says of each material what was done and why, and records the flags that repeat "
+      "its "
+      "fit. Ctrl-C ends the fits and keeps the networks so far.\n";
+  command.Takes(FitSceneFields, RunFitScene);
+  return command;
+}
+
+}  // namespace pbnbrdf::cli

@@ -1,0 +1,56 @@
+// material_options.h: the flags that say what the material is.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/fields.h"
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/brdf/brdf.h"
+
+namespace pbnbrdf::cli {
+
+struct MaterialOptions {
+  std::string source;
+  double scale_to_albedo = 0.0;  // 0: not scaled
+
+  // Throws Error.
+  std::unique_ptr<Brdf> Open() const;
+};
+
+Field MaterialField(MaterialOptions* material);
+Field ScaleField(MaterialOptions* material);
+
+// Runs what may find fault with the material, and puts its name before the message.
+template <typename Function>
+auto AboutMaterial(const MaterialOptions& material, Function function) {
+  try {
+    return function();
+  } catch (const Error& error) {
+    Fail(material.source, ": ", error.what());
+  }
+}
+
+// How every command that reads a material explains --material.
+inline constexpr char kSourceNotes[] =
+    "Sources of reflectance:\n"
+    "  FILE.binary                  a table in the format of the MERL BRDF database\n"
+    "  FILE.bsdf                    a measurement of the RGL material database, RGB or spectral\n"
+    "  FILE.alta, FILE.dat          measurements in the text format of ALTA\n"
+    "  FILE.csv                     measurements at any directions: columns "
+    "theta_i,phi_i,theta_o,phi_o (radians; theta_i_deg, ...: degrees) or wi_x,wi_y,wi_z,wo_x,..., "
+    "and value or r,g,b: f in 1/sr. The material is taken for anisotropic if phi_i varies, unless "
+    "a "
+    "line '# isotropic' or '# anisotropic' says what it is\n"
+    "  sgd:PARAMETERS.csv#MATERIAL  the shifted gamma distribution model (Bagher et al. 2012)\n"
+    "  builtin:NAME                 a material that comes with the program; pbnbrdf info builtin: "
+    "lists them\n"
+    "  MODEL:NAME=VALUE,...         an analytic model with its parameters, such as "
+    "ggx:f0=1/0.78/0.34,alpha=0.2; pbnbrdf info models: lists them\n"
+    "  FILE.json                    an analytic model that pbnbrdf fit-model wrote\n"
+    "  FILE.safetensors             a network that pbnbrdf fit wrote\n"
+    "  FILE.h5                      a network of NBRDF (Sztrajman et al. 2021), saved by Keras\n"
+    "  BASEfc1.npy                  the same as NumPy files: BASE and fc1, fc2, fc3, b1, b2 or b3, "
+    "and .npy\n";
+
+}  // namespace pbnbrdf::cli

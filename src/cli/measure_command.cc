@@ -1,0 +1,79 @@
+// pbnbrdf measure
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "material_options.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/sources/open_brdf.h"
+#include "report.h"
+
+namespace pbnbrdf::cli {
+namespace {
+
+constexpr double kMaxSamples = 1e8;  // 7 GB of samples
+
+struct MeasureCommandOptions {
+  std::string fit;
+  MaterialOptions material;
+  bool json = false;
+  MeasureOptions measure;
+};
+
+Fields MeasureCommandFields(MeasureCommandOptions* options) {
+  Fields fields;
+  fields.AddRequired(Text("fit", &options->fit,
+                          "fitted network (.safetensors, or NBRDF's .h5 or fc1.npy) or analytic "
+                          "model (.json)"));
+  fields.AddRequired(MaterialField(&options->material));
+  fields.AddCommon(ScaleField(&options->material));
+  fields.AddCommon(Switch("json", &options->json, "print one JSON object"));
+  fields.AddCommon(Integer("samples", &options->measure.samples, Between(1, kMaxSamples),
+                           "held-out samples that errors are measured at"));
+  fields.AddCommon(
+      Integer("seed", &options->measure.seed, AtLeast(0), "seed of the held-out samples"));
+  return fields;
+}
+
+struct OpenedFit {
+  std::unique_ptr<Brdf> brdf;
+  std::size_t parameters;  // numbers that it stores
+};
+
+OpenedFit OpenFit(const std::string& path) {
+  if (path.ends_with(".json")) {
+    auto model = std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(path));
+    const std::size_t parameters = model->parameters().size();
+    return {std::move(model), parameters};
+  }
+  auto network = std::make_unique<NeuralBrdf>(OpenNetwork(path));
+  const std::size_t parameters = network->weights().size();
+  return {std::move(network), parameters};
+}
+
+int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
+  const OpenedFit fit = OpenFit(options.fit);
+  const std::unique_ptr<Brdf> material = options.material.Open();
+  const nlohmann::ordered_json measures = AboutMaterial(options.material, [&] {
+    return MeasureFit(*material, *fit.brdf, fit.parameters, options.measure);
+  });
+  std::cout << (options.json ? measures.dump(2) + "\n" : MeasuresText(measures));
+  return 0;
+}
+
+}  // namespace
+
+Command MeasureCommand() {
+  Command command;
+  command.name = "measure";
+  command.summary = "measures a fit against its material: errors, reciprocity, energy";
+  command.usage =
+      "  pbnbrdf measure --fit=gold.safetensors --material=gold.binary\n"
+      "  pbnbrdf measure --fit=gold.safetensors --material=gold.binary --json\n";
+  command.notes = kSourceNotes;
+  command.Takes(MeasureCommandFields, RunMeasure);
+  return command;
+}
+
+}  // namespace pbnbrdf::cli
