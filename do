@@ -99,16 +99,14 @@ sanitize() {
     --exclude-regex '^(package|interop_.*|GlslSource\..*)$'
 }
 
-# experiments NAME [ARGUMENT ...]: a program of experiments/; its table and figure in build/results.
+# experiments NAME [ARGUMENT ...]: the program experiments/NAME.cc; its tables and figures go to build/results.
 experiments() {
-  case ${1:-} in
-    ablation | collection | jacobian_cost | models | picture | scaling | scene_fit | solver_comparison | stability) ;;
-    *)
-      echo "usage: ./do experiments ablation | collection | jacobian_cost | models | picture | scaling | scene_fit | solver_comparison | stability [--help | ARGUMENT ...]" >&2
-      exit 2
-      ;;
-  esac
-  name=$1
+  name=${1:-}
+  if [ ! -f "experiments/$name.cc" ]; then
+    echo "usage: ./do experiments NAME [--help | ARGUMENT ...], where NAME is one of:" >&2
+    (cd experiments && ls -- *.cc) | sed 's/^/  /; s/\.cc$//' >&2
+    exit 2
+  fi
   shift
   command -v gnuplot > /dev/null || packages="$packages gnuplot-nox"
   build "$name"

@@ -1,4 +1,4 @@
-// ablation.cc: what each of the paper's terms does, on many materials.
+// ablation.cc: what each of the paper's terms does, and how well one problem fits many materials.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -6,156 +6,157 @@
 
 #include "ablation_tables.h"
 #include "base/text.h"
-#include "comparison.h"
-#include "default_materials.h"
 #include "experiment.h"
 #include "fit_log.h"
+#include "for_each.h"
+#include "materials.h"
+#include "option_fields.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/scaled.h"
-#include "pbnbrdf/solve/fit.h"
 #include "pbnbrdf/sources/open_brdf.h"
-
-DEFINE_string(materials, "",
-              "in place of the default ones, separated by commas: sources, CLASS= in front of them "
-              "if wanted; sgd:NAME is a material of --sgd");
-DEFINE_string(sgd, "", "CSV of SGD parameters; '': the default materials are the built-in ones");
-DEFINE_string(tables, "1,2,3,4", "those to make: 1 to 3 are the paper's, 4 has all terms together");
-DEFINE_string(base, "default",
-              "what tables 2 and 3 add their terms to: default: the fit's default set-up, merl "
-              "encoding and tanh units | reciprocal: problems/reciprocal.flags");
-DEFINE_string(chromaticity_weights, "0.1,1", "of table 3, beside none");
-DEFINE_double(
-    scale_to_albedo, 0.99,
-    "of tables 2 and 4: the largest directional albedo that materials are scaled to, but for the "
-    "built-in ones");
-DEFINE_string(seeds, "1", "seeds of the fits");
-DEFINE_int32(max_iterations, pbnbrdf::FitOptions{}.max_iterations, "of each fit");
-DEFINE_uint64(samples, pbnbrdf::FitProblem{}.samples, "most training samples");
-DEFINE_double(max_seconds, 60.0, "of each fit");
-DEFINE_int32(threads, 0, "of each fit; 0: one for each core");
-DEFINE_int32(jobs, 1, "materials at a time");
-DEFINE_uint64(heldout_samples, 200000, "held-out samples of a fit's errors");
+#include "problems.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr char kUsage[] =
-    R"(ablation: the paper's tables, with and without each of its terms, on our materials.
+const std::string kUsage =
+    R"(ablation: the paper's tables, with and without each of its terms, on our materials; and the error of
+one problem on each material.
 
   ablation --out_dir=results --sgd=parameters.csv
-  ablation --out_dir=results --materials=builtin:satin-gold,metal=gold.binary --tables=1,3
-  ablation --out_dir=results --sgd=parameters.csv --jobs=2 --threads=1 merl/*.binary
+  ablation --out_dir=results --tables=1,3 builtin:satin-gold metal=gold.binary
+  ablation --out_dir=results --tables=5 --jobs=2 --threads=1 merl/*.binary
 
-The arguments are further materials. Table 1 compares encodings, table 2 fits of materials that
-reflect next to all light with and without the energy term, table 3 weights of the chromaticity
-term, table 4 problems/pbnbrdf.flags with and without the energy term on materials as they are and
-scaled. Each fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
-)";
+Table 1 compares encodings. Table 2 compares fits with and without the energy term, of materials that
+reflect nearly all light. Table 3 compares weights of the chromaticity term. Table 4 is
+problems/pbnbrdf.flags with and without the energy term, on materials as they are and scaled. Table 5
+has one problem, --problem, and lists the materials from the smallest error to the largest.
 
-// A built-in material below this isn't one of low dissipation; others are scaled.
-constexpr double kLowDissipation = 0.9;
+The arguments are materials; without any, 16 built-in ones and, with --sgd, 30 of the SGD model. Each
+fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
+)" + std::string(kMaterialsHelp);
+
+// Table 2 has built-in materials as they are, if their largest albedo is at least this.
+constexpr double kMinAlbedo = 0.9;
 
 enum class Base { kDefault, kReciprocal };
 
 constexpr NameTable<Base, 2> kBases = {
     {{"default", Base::kDefault}, {"reciprocal", Base::kReciprocal}}};
 
-// A row of a table.
-struct SetUp {
-  std::string name;
-  FitProblem problem;
+struct Options {
+  std::vector<int> tables = {1, 2, 3, 4};
+  Base base = Base::kDefault;
+  std::vector<std::string> chromaticity_weights = {"0.1", "1"};
+  double scale_to_albedo = 0.99;
+  std::string problem;
+  std::vector<int> seeds = {1};
+  std::optional<int> max_iterations;
+  std::optional<std::uint64_t> samples;
+  double max_seconds = 60.0;
+  int threads = 0, jobs = 1;
+  std::uint64_t heldout_samples = 200000;
+  std::string sgd;
 };
 
-// problems/nbrdf.flags, on another encoding.
-FitProblem NbrdfProblem(Encoding encoding) {
-  FitProblem problem;
-  problem.encoding = encoding;
-  problem.activation = Activation::kRelu;
-  problem.sampling = Sampling::kUniform;
-  problem.energy_weight = 0.0;
-  return problem;
+Fields FieldsOf(Options* o) {
+  Fields fields;
+  fields.Add(Integers("tables", &o->tables, Between(1, 5), "the tables to make"));
+  fields.Add(Choice("base", &o->base, kBases,
+                    "what tables 2 and 3 add their terms to: default is the default problem, "
+                    "reciprocal is problems/reciprocal.flags"));
+  fields.Add(Texts("chromaticity_weights", &o->chromaticity_weights,
+                   "weights of table 3, which also has fits without the term"));
+  fields.Add(Number("scale_to_albedo", &o->scale_to_albedo, Above(0.0),
+                    "the largest directional albedo that tables 2 and 4 scale materials to; "
+                    "built-in ones are not scaled"));
+  fields.Add(Text("problem", &o->problem, "problem file of table 5; '': the default problem"));
+  fields.Add(Integers("seeds", &o->seeds, AtLeast(1), "seeds of the fits"));
+  fields.Add(OverridingInteger("max_iterations", &o->max_iterations, AtLeast(0),
+                               "iterations of each fit, at most"));
+  fields.Add(OverridingInteger("samples", &o->samples, AtLeast(1), "training samples, at most"));
+  fields.Add(Number("max_seconds", &o->max_seconds, Above(0.0), "time for each fit"));
+  fields.Add(Integer("threads", &o->threads, AtLeast(0), "of each fit; 0: one for each core"));
+  fields.Add(Integer("jobs", &o->jobs, AtLeast(1), "how many materials are fitted at a time"));
+  fields.Add(Integer("heldout_samples", &o->heldout_samples, AtLeast(1),
+                     "held-out samples that errors are measured on"));
+  fields.Add(Text("sgd", &o->sgd, kSgdHelp));
+  return fields;
+}
+
+// A row of a table.
+struct Row {
+  std::string name;
+  FitSetup setup;
+};
+
+Row WithWeight(std::string name, FitSetup setup, std::string_view term, double weight) {
+  setup.problem.terms.SetWeight(term, weight);
+  return {std::move(name), std::move(setup)};
 }
 
 // With the log term alone.
-FitProblem BaseProblem(Base base) {
-  if (base == Base::kReciprocal) return NbrdfProblem(Encoding::kReciprocal);
-  FitProblem problem;
-  problem.energy_weight = 0.0;
-  return problem;
+FitSetup BaseSetup(Base base) {
+  if (base == Base::kReciprocal) return ShippedProblem("reciprocal");
+  return WithWeight("", {}, "energy", 0.0).setup;
 }
 
-// problems/pbnbrdf.flags; the energy term last.
-std::vector<SetUp> AllTermsSetUps() {
-  std::vector<SetUp> set_ups(2);
-  for (SetUp& set_up : set_ups) set_up.problem.chromaticity_weight = 0.1;
-  set_ups[0].name = "log + chromaticity";
-  set_ups[0].problem.energy_weight = 0.0;
-  set_ups[1].name = "log + chromaticity + energy";
-  return set_ups;
+std::vector<Row> EncodingRows() {
+  Row merl = {"merl encoding", ShippedProblem("nbrdf")};
+  merl.setup.problem.network.encoding = Encoding::kMerl;
+  return {{"nbrdf", ShippedProblem("nbrdf")},
+          {"reciprocal encoding", ShippedProblem("reciprocal")},
+          merl};
 }
 
-std::vector<SetUp> SetUps(std::size_t table, Base base) {
-  if (table == 1) {
-    return {{"nbrdf", NbrdfProblem(Encoding::kCartesian)},
-            {"reciprocal encoding", NbrdfProblem(Encoding::kReciprocal)},
-            {"merl encoding", NbrdfProblem(Encoding::kMerl)}};
+// Rows with the energy term come last.
+std::vector<Row> Rows(int table, const Options& options) {
+  const FitSetup base = BaseSetup(options.base), all_terms = ShippedProblem("pbnbrdf");
+  switch (table) {
+    case 1:
+      return EncodingRows();
+    case 2:
+      return {{"log", base},
+              WithWeight("log + energy", base, "energy", TermOptions{}.EnergyWeight())};
+    case 4:
+      return {WithWeight("log + chromaticity", all_terms, "energy", 0.0),
+              {"log + chromaticity + energy", all_terms}};
+    case 5:
+      return {{"fit", options.problem.empty() ? FitSetup{} : ReadProblem(options.problem)}};
+    default:
+      break;
   }
-  if (table == 4) return AllTermsSetUps();
-  std::vector<SetUp> set_ups = {{"log", BaseProblem(base)}};
-  if (table == 2) {
-    set_ups.push_back({"log + energy", BaseProblem(base)});
-    set_ups.back().problem.energy_weight = FitProblem{}.energy_weight;
-    return set_ups;
+  std::vector<Row> rows = {{"log", base}};
+  for (const std::string& weight : options.chromaticity_weights) {
+    rows.push_back(WithWeight(StrCat("log + ", weight, " chromaticity"), base, "chromaticity",
+                              ParseNumber("chromaticity_weights", weight)));
   }
-  for (const std::string& text : Split(FLAGS_chromaticity_weights, ',')) {
-    set_ups.push_back({StrCat("log + ", text, " chromaticity"), BaseProblem(base)});
-    set_ups.back().problem.chromaticity_weight = ParseNumber("chromaticity_weights", text);
-  }
-  return set_ups;
-}
-
-std::vector<std::string> MaterialTexts(const std::vector<std::string>& arguments) {
-  std::vector<std::string> texts =
-      FLAGS_materials.empty() ? BuiltinTexts() : Split(FLAGS_materials, ',');
-  if (FLAGS_materials.empty() && !FLAGS_sgd.empty()) {
-    const std::vector<std::string> sgd = SgdTexts();
-    texts.insert(texts.end(), sgd.begin(), sgd.end());
-  }
-  texts.insert(texts.end(), arguments.begin(), arguments.end());
-  for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
-  return texts;
+  return rows;
 }
 
 // What is asked for, all of it checked before the first fit.
 struct Plan {
-  std::vector<std::size_t> tables;
+  Options options;
   std::vector<MaterialSource> materials;
-  std::vector<std::size_t> seeds;
-  Base base;
-  FitOptions options;
+  std::vector<std::vector<Row>> rows;  // of each of the tables
 };
 
-Plan MakePlan(const std::vector<std::string>& arguments) {
-  Plan plan;
-  plan.tables = ParseCounts("tables", FLAGS_tables);
-  plan.seeds = ParseCounts("seeds", FLAGS_seeds);
-  plan.base = ParseName(kBases, "base", FLAGS_base);
-  plan.options.max_iterations = FLAGS_max_iterations;
-  plan.options.max_seconds = FLAGS_max_seconds;
-  plan.options.threads = FLAGS_threads;
-  for (std::size_t table : plan.tables) {
-    if (table > 4) Fail("tables: ", table, "; must be 1 to 4");
-    for (SetUp& set_up : SetUps(table, plan.base)) {
-      set_up.problem.samples = FLAGS_samples;
-      ValidateFit(set_up.problem, plan.options);
+Plan MakePlan(const Options& options, const Arguments& arguments) {
+  Plan plan = {options, {}, {}};
+  for (int table : options.tables) {
+    std::vector<Row> rows = Rows(table, options);
+    for (auto& [name, setup] : rows) {
+      ScheduleOptions* schedule = &setup.options.schedule;
+      schedule->max_iterations = options.max_iterations.value_or(schedule->max_iterations);
+      schedule->max_seconds = options.max_seconds;
+      setup.options.threads = options.threads;
+      SamplingOptions* sampling = &setup.problem.sampling;
+      sampling->samples = options.samples.value_or(sampling->samples);
+      ValidateFit(setup.problem, setup.options);
     }
+    plan.rows.push_back(std::move(rows));
   }
-  if (FLAGS_heldout_samples < 1) Fail("heldout_samples = 0; must be >= 1");
-  if (FLAGS_jobs < 1) Fail("jobs = ", FLAGS_jobs, "; must be >= 1");
-  if (!(FLAGS_scale_to_albedo > 0.0)) {
-    Fail("scale_to_albedo = ", FLAGS_scale_to_albedo, "; must be > 0");
-  }
-  plan.materials = ParseMaterials(MaterialTexts(arguments));
+  plan.materials = ParseMaterials(arguments, ManyMaterials(options.sgd), options.sgd);
   return plan;
 }
 
@@ -165,7 +166,7 @@ struct Variant {
   std::unique_ptr<Brdf> brdf;
 };
 
-std::vector<Variant> Variants(std::size_t table, const MaterialSource& material) {
+std::vector<Variant> Variants(int table, const MaterialSource& material, double scale_to_albedo) {
   std::vector<Variant> variants;
   const auto add = [&](const std::string& name, std::unique_ptr<Brdf> brdf) {
     variants.push_back({name, std::move(brdf)});
@@ -173,27 +174,31 @@ std::vector<Variant> Variants(std::size_t table, const MaterialSource& material)
   const bool is_builtin = material.source.starts_with("builtin:");
   std::unique_ptr<Brdf> brdf = OpenBrdf(material.source);
   if (table == 1 && !brdf->IsIsotropic()) return {};  // its encodings are
-  const bool as_it_is = table != 2 || (is_builtin && LargestAlbedo(*brdf) >= kLowDissipation);
+  const bool as_it_is = table != 2 || (is_builtin && LargestAlbedo(*brdf) >= kMinAlbedo);
   if (as_it_is) add(material.name, std::move(brdf));
   if (is_builtin || (table != 2 && table != 4)) return variants;
   add(table == 4 ? StrCat(material.name, " scaled") : material.name,
-      ScaleToAlbedo(OpenBrdf(material.source), FLAGS_scale_to_albedo));
+      ScaleToAlbedo(OpenBrdf(material.source), scale_to_albedo));
   return variants;
 }
 
 class Ablation {
  public:
-  explicit Ablation(const Plan& plan)
+  Ablation(const Plan& plan, const Output& output)
       : plan_(plan),
-        log_(OutputPath("ablation.csv"), AblationCsvHeader()),
+        output_(output),
+        log_(output.Path("ablation.csv"), AblationCsvHeader()),
         records_(plan.materials.size()) {}
 
   // Of the plan's materials.
   void RunMaterial(std::size_t index) {
     const MaterialSource& material = plan_.materials[index];
-    for (std::size_t table : plan_.tables) {
+    for (std::size_t t = 0; t < plan_.rows.size(); ++t) {
+      const int table = plan_.options.tables[t];
       try {
-        for (const Variant& variant : Variants(table, material)) RunTable(table, variant, index);
+        for (const Variant& variant : Variants(table, material, plan_.options.scale_to_albedo)) {
+          RunTable(table, plan_.rows[t], variant, index);
+        }
       } catch (const Error& error) {
         log_.AddFailure(StrCat("table ", table, ", ", material.name, ": ", error.what()));
       }
@@ -205,13 +210,14 @@ class Ablation {
     for (const auto& of_material : records_) {
       all.insert(all.end(), of_material.begin(), of_material.end());
     }
-    WriteReport("ablation", Preface() + AblationMarkdown(all));
+    output_.WriteReport("ablation", Preface() + AblationMarkdown(all));
   }
 
  private:
-  void RunTable(std::size_t table, const Variant& variant, std::size_t index) {
+  void RunTable(int table, const std::vector<Row>& rows, const Variant& variant,
+                std::size_t index) {
     AblationRecord record;
-    record.table = static_cast<int>(table);
+    record.table = table;
     record.material = variant.name;
     record.material_class = plan_.materials[index].material_class;
     if (table == 2 || table == 4) {
@@ -219,27 +225,27 @@ class Ablation {
       record.energy = MeasureEnergy(*variant.brdf);
       Keep(record, index);
     }
-    for (std::size_t seed : plan_.seeds) {
-      record.seed = seed;
-      RunSetUps(SetUps(table, plan_.base), *variant.brdf, record, index);
+    for (int seed : plan_.options.seeds) {
+      record.seed = static_cast<std::uint64_t>(seed);
+      RunRows(rows, *variant.brdf, record, index);
     }
   }
 
-  // record: names the fits. The last one is done first if it has an energy term: where that had
-  // nothing to do, its fit is also that of the set-up before it, the same without the term.
-  void RunSetUps(std::vector<SetUp> set_ups, const Brdf& material, AblationRecord record,
-                 std::size_t index) {
-    const bool is_reversed = set_ups.back().problem.energy_weight > 0.0;
-    if (is_reversed) std::reverse(set_ups.begin(), set_ups.end());
+  // record: names the fits. The last row is done first if it has an energy term: where that had nothing
+  // to do, its fit is also that of the row before it, the same without the term.
+  void RunRows(std::vector<Row> rows, const Brdf& material, AblationRecord record,
+               std::size_t index) {
+    const bool is_reversed = rows.back().setup.problem.terms.EnergyWeight() > 0.0;
+    if (is_reversed) std::reverse(rows.begin(), rows.end());
     std::vector<AblationRecord> fits;
     bool is_known = false;
-    for (const SetUp& set_up : set_ups) {
-      record.set_up = set_up.name;
+    for (const Row& row : rows) {
+      record.set_up = row.name;
       if (!is_known) {
-        const std::optional<EnergySummary> energy = RunFit(material, set_up.problem, &record);
+        const std::optional<EnergySummary> energy = RunFit(material, row.setup, &record);
         if (!energy) continue;
         const bool has_acted = energy->rounds > 0 || energy->correction > 0.0;
-        is_known = set_up.problem.energy_weight > 0.0 && !has_acted;
+        is_known = row.setup.problem.terms.EnergyWeight() > 0.0 && !has_acted;
       }
       fits.push_back(record);
     }
@@ -248,16 +254,15 @@ class Ablation {
   }
 
   // record: names the fit and takes its measures. None if it failed.
-  std::optional<EnergySummary> RunFit(const Brdf& material, FitProblem problem,
+  std::optional<EnergySummary> RunFit(const Brdf& material, FitSetup setup,
                                       AblationRecord* record) {
     const std::string what = StrCat("table ", record->table, ", ", record->material, ", ",
                                     record->set_up, ", seed ", record->seed, ": ");
-    problem.samples = FLAGS_samples;
-    problem.seed = record->seed;
-    if (!material.IsIsotropic()) problem.encoding = EncodingFor(material);
+    setup.problem.sampling.seed = record->seed;
+    if (!material.IsIsotropic()) setup.problem.network.encoding = EncodingFor(material);
     std::optional<EnergySummary> energy;
     try {
-      const Fit fit = FitBrdf(material, problem, plan_.options);
+      const Fit fit = FitBrdf(material, setup.problem, setup.options);
       Measure(material, fit, record);
       energy = fit.summary.energy;
     } catch (const Error& error) {
@@ -273,13 +278,14 @@ class Ablation {
     return energy;
   }
 
-  static void Measure(const Brdf& material, const Fit& fit, AblationRecord* record) {
+  void Measure(const Brdf& material, const Fit& fit, AblationRecord* record) const {
+    const auto heldout = [&] {
+      return HeldOutSamples(material, plan_.options.heldout_samples, /*seed=*/1);
+    };
     record->iterations = fit.summary.iterations;
     record->seconds = fit.summary.seconds;
-    record->errors =
-        MeasureErrors(HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1), fit.network);
-    record->colors = MeasureColorErrors(HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1),
-                                        fit.network);
+    record->errors = MeasureErrors(heldout(), fit.network);
+    record->colors = MeasureColorErrors(heldout(), fit.network);
     record->reciprocity = MeasureReciprocity(fit.network);
     record->energy = MeasureEnergy(fit.network);
   }
@@ -291,26 +297,27 @@ class Ablation {
 
   // How the numbers came about, and what failed.
   std::string Preface() const {
-    return StrCat(
-        plan_.materials.size(), " materials, seeds ", FLAGS_seeds, ", at most ",
-        FLAGS_max_iterations, " iterations and ", FLAGS_max_seconds,
-        " s a fit; base of the energy and chromaticity tables: ", FLAGS_base,
-        ". Medians are over materials, of each the median of its seeds; worst: of all fits. For "
-        "energy, materials that aren't built in are scaled to a largest directional albedo of ",
-        FLAGS_scale_to_albedo, ", and built-in ones as they are if theirs is at least ",
-        kLowDissipation, "; for all terms, they come both as they are and scaled. ",
-        log_.FailuresMarkdown());
+    const Options& o = plan_.options;
+    return StrCat(plan_.materials.size(), " materials, seeds ", Joined(o.seeds, ","), ", at most ",
+                  o.max_seconds, " s a fit; tables 2 and 3 add terms to: ", NameOf(kBases, o.base),
+                  ". Medians are over materials, of each the median of its seeds; worst: of all "
+                  "fits. Table 2 "
+                  "scales materials to a largest directional albedo of ",
+                  o.scale_to_albedo, ", and has built-in ones as they are if theirs is at least ",
+                  kMinAlbedo, "; table 4 has materials both as they are and scaled. ",
+                  log_.FailuresMarkdown());
   }
 
   const Plan& plan_;
+  const Output& output_;
   FitLog log_;
   std::vector<std::vector<AblationRecord>> records_;  // of each material
 };
 
-void Run(const std::vector<std::string>& arguments) {
-  const Plan plan = MakePlan(arguments);
-  Ablation ablation(plan);
-  ForEach(plan.materials.size(), FLAGS_jobs, [&](std::size_t k) { ablation.RunMaterial(k); });
+void Run(const Options& options, const Arguments& arguments, const Output& output) {
+  const Plan plan = MakePlan(options, arguments);
+  Ablation ablation(plan, output);
+  ForEach(plan.materials.size(), options.jobs, [&](std::size_t k) { ablation.RunMaterial(k); });
   ablation.Report();
 }
 
@@ -318,5 +325,5 @@ void Run(const std::vector<std::string>& arguments) {
 }  // namespace pbnbrdf
 
 int main(int argc, char** argv) {
-  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::FieldsOf, pbnbrdf::Run);
 }

@@ -1,58 +1,82 @@
 // models.cc: analytic models beside networks: error and size, the comparison of Ngan et al. 2005.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 
 #include "base/text.h"
-#include "comparison.h"
-#include "default_materials.h"
+#include "curves.h"
 #include "experiment.h"
+#include "fit_log.h"
+#include "materials.h"
+#include "option_fields.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/models/fit_analytic.h"
 #include "pbnbrdf/solve/fit.h"
 #include "pbnbrdf/sources/open_brdf.h"
-
-DEFINE_string(materials, "",
-              "in place of the default ones, separated by commas: sources, CLASS= in front of them "
-              "if wanted; sgd:NAME is a material of --sgd");
-DEFINE_string(sgd, "", "CSV of SGD parameters; '': the default materials are the built-in ones");
-DEFINE_string(models,
-              "lambert,oren_nayar,phong,blinn_phong,lafortune,ward,ward_duer,ward_bounded,"
-              "cook_torrance,ggx,abc,disney",
-              "analytic models");
-DEFINE_string(lobes, "1,2", "lobes of those that have any");
-DEFINE_string(hidden, "3,3 21,21", "hidden layers of the networks, '' for none");
-DEFINE_string(sampling, "uniform",
-              "training angles of the models: uniform, as those that errors are measured on | "
-              "highlight, as the networks have them");
-DEFINE_uint64(samples, 6000, "training samples of the models");
-DEFINE_int32(starts, pbnbrdf::AnalyticFitOptions{}.starts, "of the models");
-DEFINE_uint64(network_samples, pbnbrdf::FitProblem{}.samples, "most samples of the networks");
-DEFINE_int32(network_iterations, pbnbrdf::FitOptions{}.max_iterations, "of the networks, at most");
-DEFINE_double(max_seconds, 60.0, "of each network");
-DEFINE_uint64(seed, 1, "of the fits");
-DEFINE_int32(threads, 0, "of each fit; 0: one for each core");
-DEFINE_uint64(heldout_samples, 200000, "held-out samples of a fit's errors");
+#include "table.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr char kUsage[] =
+const std::string kUsage =
     R"(models: analytic models fitted to materials, beside networks.
 
   models --out_dir=results --sgd=parameters.csv
-  models --out_dir=results --materials=builtin:satin-gold,metal=gold.binary --models=ggx,ward
+  models --out_dir=results --models=ggx,ward builtin:satin-gold metal=gold.binary
 
-The arguments are further materials. Each fit is a row of models.csv as soon as it is done; the
-tables, in models.md, are the best of each material and each method over each kind of source.
-The built-in materials are analytic themselves (Lambert, Oren-Nayar, ward_bounded, ggx).
-)";
+The arguments are materials; without any, the built-in ones and, with --sgd, 30 of the SGD model. Each
+fit is a row of models.csv as soon as it is done. models.md has two tables: the best model and the best
+network of each material, and each method over each kind of source. The built-in materials are analytic
+themselves (Lambert, Oren-Nayar, ward_bounded, ggx).
+)" + std::string(kMaterialsHelp);
+
+struct Options {
+  std::vector<std::string> models = {"lambert",       "oren_nayar", "phong",     "blinn_phong",
+                                     "lafortune",     "ward",       "ward_duer", "ward_bounded",
+                                     "cook_torrance", "ggx",        "abc",       "disney"};
+  std::vector<int> lobes = {1, 2};
+  std::vector<std::vector<int>> hidden = {{3, 3}, {21, 21}};
+  Sampling sampling = Sampling::kUniform;
+  std::uint64_t samples = 6000;
+  int starts = AnalyticFitOptions{}.starts;
+  std::uint64_t network_samples = SamplingOptions{}.samples;
+  int network_iterations = ScheduleOptions{}.max_iterations;
+  double max_seconds = 60.0;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::uint64_t heldout_samples = 200000;
+  std::string sgd;
+};
+
+Fields FieldsOf(Options* o) {
+  Fields fields;
+  fields.Add(Texts("models", &o->models, "analytic models"));
+  fields.Add(Integers("lobes", &o->lobes, AtLeast(1), "numbers of lobes of models that have any"));
+  fields.Add(
+      Networks("hidden", &o->hidden, "sizes of the hidden layers of each network; '': no network"));
+  fields.Add(Choice("sampling", &o->sampling, kSamplings,
+                    "training angles of the models: uniform, like the angles that errors are "
+                    "measured at, or highlight, like the training angles of the networks"));
+  fields.Add(Integer("samples", &o->samples, AtLeast(1), "training samples of the models"));
+  fields.Add(Integer("starts", &o->starts, AtLeast(1), "starts of each model's fit"));
+  fields.Add(Integer("network_samples", &o->network_samples, AtLeast(1),
+                     "training samples of the networks, at most"));
+  fields.Add(Integer("network_iterations", &o->network_iterations, AtLeast(0),
+                     "iterations of the networks, at most"));
+  fields.Add(Number("max_seconds", &o->max_seconds, Above(0.0), "time for each network"));
+  fields.Add(Integer("seed", &o->seed, AtLeast(0), "of the fits"));
+  fields.Add(Integer("threads", &o->threads, AtLeast(0), "of each fit; 0: one for each core"));
+  fields.Add(Integer("heldout_samples", &o->heldout_samples, AtLeast(1),
+                     "held-out samples that errors are measured on"));
+  fields.Add(Text("sgd", &o->sgd, kSgdHelp));
+  return fields;
+}
 
 // One fit of a method to a material.
 struct ModelRecord {
@@ -65,7 +89,7 @@ struct ModelRecord {
   double delta_e = 0.0;
 };
 
-// What a fit gave: the numbers that it stores, and what they say.
+// What a fit gave; `parameters` is how many numbers it stores.
 struct MethodResult {
   std::unique_ptr<Brdf> brdf;
   std::size_t parameters;
@@ -79,88 +103,73 @@ struct Method {
   std::function<MethodResult(const Brdf&)> fit;
 };
 
-MethodResult FitModel(const Brdf& material, const AnalyticModel& model,
-                      const AnalyticFitOptions& options) {
+MethodResult FitModel(const Brdf& material, const AnalyticModel& model, const Options& options,
+                      const AnalyticFitOptions& fit_options) {
   const std::vector<BrdfSample> samples =
-      DrawSamples(material, SampleSet::kTraining, ParseName(kSamplings, "sampling", FLAGS_sampling),
-                  FLAGS_samples, FLAGS_seed);
-  const AnalyticFit fit = FitAnalytic(samples, material.IsIsotropic(), model, options);
+      DrawSamples(material, SampleSet::kTraining, options.sampling, options.samples, options.seed);
+  const AnalyticFit fit = FitAnalytic(samples, material.IsIsotropic(), model, fit_options);
   return {std::make_unique<AnalyticBrdf>(fit.brdf), fit.brdf.parameters().size(),
           fit.summary.iterations, fit.summary.seconds};
 }
 
-MethodResult FitNetwork(const Brdf& material, FitProblem problem, const FitOptions& options) {
-  problem.encoding = EncodingFor(material);
+MethodResult FitNetwork(const Brdf& material, const FitProblem& problem,
+                        const FitOptions& options) {
   const Fit fit = FitBrdf(material, problem, options);
   return {std::make_unique<NeuralBrdf>(fit.network), fit.network.weights().size(),
           fit.summary.iterations, fit.summary.seconds};
 }
 
-void AddModels(std::vector<Method>* methods) {
-  const std::vector<std::size_t> lobes = ParseCounts("lobes", FLAGS_lobes);
-  for (const std::string& name : Split(FLAGS_models, ',')) {
+void AddModels(const Options& options, std::vector<Method>* methods) {
+  for (const std::string& name : options.models) {
     const AnalyticModel& model = FindAnalyticModel(name);
-    for (std::size_t n : lobes) {
-      AnalyticFitOptions options;
-      options.lobes = static_cast<int>(n);
-      options.starts = FLAGS_starts;
-      options.threads = FLAGS_threads;
-      options.Validate();
+    for (int n : options.lobes) {
+      AnalyticFitOptions fit_options;
+      fit_options.lobes = n;
+      fit_options.starts = options.starts;
+      fit_options.threads = options.threads;
+      fit_options.Validate();
       const bool has_lobes = !model.lobe.empty();
-      methods->push_back(
-          {has_lobes ? StrCat(name, ", ", n, n == 1 ? " lobe" : " lobes") : name, false,
-           [&model, options](const Brdf& material) { return FitModel(material, model, options); }});
+      methods->push_back({has_lobes ? StrCat(name, ", ", n, n == 1 ? " lobe" : " lobes") : name,
+                          false, [&options, &model, fit_options](const Brdf& material) {
+                            return FitModel(material, model, options, fit_options);
+                          }});
       if (!has_lobes) break;
     }
   }
 }
 
-void AddNetworks(std::vector<Method>* methods) {
-  if (FLAGS_hidden.empty()) return;
-  for (const std::vector<int>& hidden : ParseNetworks("hidden", FLAGS_hidden)) {
+void AddNetworks(const Options& options, std::vector<Method>* methods) {
+  for (const std::vector<int>& hidden : options.hidden) {
     FitProblem problem;
-    problem.hidden = hidden;
-    problem.samples = FLAGS_network_samples;
-    problem.seed = FLAGS_seed;
-    FitOptions options;
-    options.max_iterations = FLAGS_network_iterations;
-    options.max_seconds = FLAGS_max_seconds;
-    options.threads = FLAGS_threads;
-    ValidateFit(problem, options);
-    methods->push_back(
-        {StrCat("network ", HiddenName(hidden)), true, [problem, options](const Brdf& material) {
-           return FitNetwork(material, problem, options);
-         }});
+    problem.network.hidden = hidden;
+    problem.sampling.samples = options.network_samples;
+    problem.sampling.seed = options.seed;
+    FitOptions fit_options;
+    fit_options.schedule.max_iterations = options.network_iterations;
+    fit_options.schedule.max_seconds = options.max_seconds;
+    fit_options.threads = options.threads;
+    ValidateFit(problem, fit_options);
+    methods->push_back({StrCat("network ", HiddenName(hidden)), true,
+                        [problem, fit_options](const Brdf& material) {
+                          return FitNetwork(material, problem, fit_options);
+                        }});
   }
 }
 
-std::vector<MaterialSource> Materials(const std::vector<std::string>& arguments) {
-  std::vector<std::string> texts;
-  if (!FLAGS_materials.empty()) {
-    texts = Split(FLAGS_materials, ',');
-  } else {
-    for (const BuiltinMaterial& material : BuiltinMaterials()) {
-      texts.push_back(StrCat("builtin:", material.name));
-    }
-    const std::vector<std::string> sgd =
-        FLAGS_sgd.empty() ? std::vector<std::string>{} : SgdTexts();
-    texts.insert(texts.end(), sgd.begin(), sgd.end());
+Arguments DefaultMaterials(const std::string& sgd) {
+  Arguments texts;
+  for (const BuiltinMaterial& material : BuiltinMaterials()) {
+    texts.push_back(StrCat("builtin:", material.name));
   }
-  texts.insert(texts.end(), arguments.begin(), arguments.end());
-  for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
-  return ParseMaterials(texts);
+  const Arguments more = SgdMaterials(sgd);
+  texts.insert(texts.end(), more.begin(), more.end());
+  return texts;
 }
 
 // "builtin", "sgd", "file"
 std::string KindOf(const MaterialSource& material) {
   const std::size_t colon = material.source.find(':');
   return colon == std::string::npos ? "file" : material.source.substr(0, colon);
-}
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
 // The record of least error among the analytic models, or the networks; null if there is none.
@@ -230,11 +239,12 @@ std::string MethodTable(const std::vector<ModelRecord>& records, const std::stri
 
 class Comparison {
  public:
-  explicit Comparison(const std::vector<Method>& methods)
-      : methods_(methods), csv_path_(OutputPath("models.csv")), csv_(csv_path_) {
-    csv_ << CsvLine({"material", "kind", "method", "parameters", "iterations", "seconds",
-                     "mean_abs_log_error", "rmse", "delta_e_mean"})
-         << std::flush;
+  // methods must outlive this.
+  Comparison(const Options& options, const std::vector<Method>& methods, const Output& output)
+      : options_(options),
+        methods_(methods),
+        log_(output.Path("models.csv"), {"material", "kind", "method", "parameters", "iterations",
+                                         "seconds", "mean_abs_log_error", "rmse", "delta_e_mean"}) {
   }
 
   void RunMaterial(const MaterialSource& source) {
@@ -249,18 +259,16 @@ class Comparison {
         Measure(*material, method, &record);
         Keep(record);
       } catch (const Error& error) {
-        failures_.push_back(StrCat(source.name, ", ", method.name, ": ", error.what()));
-        std::fprintf(stderr, "%s\n", failures_.back().c_str());
+        log_.AddFailure(StrCat(source.name, ", ", method.name, ": ", error.what()));
       }
     }
   }
 
-  void Report(std::size_t materials) const {
-    std::string text = StrCat(materials, " materials. Error: mean absolute log error (eq. 6) on ",
-                              FLAGS_heldout_samples,
-                              " held-out samples. Failed fits: ", failures_.size(), ".\n\n");
-    for (const std::string& failure : failures_) text += "- " + failure + "\n";
-    text += "\n## By material\n\n" + MaterialTable(records_);
+  std::string Report(std::size_t materials) const {
+    std::string text =
+        StrCat(materials, " materials. Error: mean absolute log error (eq. 6) on ",
+               options_.heldout_samples, " held-out samples. ", log_.FailuresMarkdown(),
+               "## By material\n\n", MaterialTable(records_));
     for (const char* kind : {"builtin", "sgd", "file"}) {
       const bool any = std::any_of(records_.begin(), records_.end(),
                                    [&](const ModelRecord& r) { return r.kind == kind; });
@@ -268,58 +276,55 @@ class Comparison {
         text += StrCat("\n## By method, ", kind, "\n\n") + MethodTable(records_, kind, methods_);
       }
     }
-    WriteReport("models", text);
+    return text;
   }
 
  private:
-  static void Measure(const Brdf& material, const Method& method, ModelRecord* record) {
+  void Measure(const Brdf& material, const Method& method, ModelRecord* record) const {
+    const auto heldout = [&] {
+      return HeldOutSamples(material, options_.heldout_samples, /*seed=*/1);
+    };
     const MethodResult result = method.fit(material);
     record->parameters = result.parameters;
     record->iterations = result.iterations;
     record->seconds = result.seconds;
-    record->errors =
-        MeasureErrors(HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1), *result.brdf);
-    record->delta_e = MeasureColorErrors(
-                          HeldOutSamples(material, FLAGS_heldout_samples, /*seed=*/1), *result.brdf)
-                          .delta_e_mean;
+    record->errors = MeasureErrors(heldout(), *result.brdf);
+    record->delta_e = MeasureColorErrors(heldout(), *result.brdf).delta_e_mean;
     if (!std::isfinite(record->errors.mean_abs_log_error) || !std::isfinite(record->delta_e)) {
       Fail("a measure isn't finite");
     }
   }
 
-  // At once, so that a long run that is stopped has left its rows.
   void Keep(const ModelRecord& record) {
-    csv_ << CsvLine({record.material, record.kind, record.method, StrCat(record.parameters),
-                     StrCat(record.iterations), FormatNumber(record.seconds),
-                     FormatNumber(record.errors.mean_abs_log_error),
-                     FormatNumber(record.errors.rmse), FormatNumber(record.delta_e)});
-    if (!csv_.flush()) Fail(csv_path_, ": can't be written");
+    log_.AddRow({record.material, record.kind, record.method, StrCat(record.parameters),
+                 StrCat(record.iterations), FormatNumber(record.seconds),
+                 FormatNumber(record.errors.mean_abs_log_error), FormatNumber(record.errors.rmse),
+                 FormatNumber(record.delta_e)});
     std::fprintf(stderr, "%s, %s: %.3g in %.3g s\n", record.material.c_str(), record.method.c_str(),
                  record.errors.mean_abs_log_error, record.seconds);
     records_.push_back(record);
   }
 
+  const Options& options_;
   const std::vector<Method>& methods_;
-  std::string csv_path_;
-  std::ofstream csv_;
+  FitLog log_;
   std::vector<ModelRecord> records_;
-  std::vector<std::string> failures_;
 };
 
-void Run(const std::vector<std::string>& arguments) {
-  if (FLAGS_heldout_samples < 1) Fail("heldout_samples = 0; must be >= 1");
+void Run(const Options& options, const Arguments& arguments, const Output& output) {
   std::vector<Method> methods;
-  AddModels(&methods);
-  AddNetworks(&methods);
-  const std::vector<MaterialSource> materials = Materials(arguments);
-  Comparison comparison(methods);
+  AddModels(options, &methods);
+  AddNetworks(options, &methods);
+  const std::vector<MaterialSource> materials =
+      ParseMaterials(arguments, DefaultMaterials(options.sgd), options.sgd);
+  Comparison comparison(options, methods, output);
   for (const MaterialSource& material : materials) comparison.RunMaterial(material);
-  comparison.Report(materials.size());
+  output.WriteReport("models", comparison.Report(materials.size()));
 }
 
 }  // namespace
 }  // namespace pbnbrdf
 
 int main(int argc, char** argv) {
-  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::FieldsOf, pbnbrdf::Run);
 }

@@ -4,81 +4,87 @@
 #include <array>
 #include <cstdio>
 #include <functional>
-#include <iterator>
+#include <optional>
 
-#include "base/text.h"
-#include "comparison.h"
-#include "default_materials.h"
 #include "experiment.h"
+#include "materials.h"
+#include "option_fields.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/metrics/flip.h"
 #include "pbnbrdf/metrics/image_metrics.h"
 #include "pbnbrdf/render/render.h"
-#include "pbnbrdf/solve/fit.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "problems.h"
 #include "small_scene.h"
-
-DEFINE_string(scene, "problems/scenes/sphere.json", "a scene of one material");
-DEFINE_string(environment, "", "OpenEXR file in place of the scene's environment light");
-DEFINE_string(sgd, "", "CSV of SGD parameters, for materials sgd:NAME");
-DEFINE_int32(film_width, 256, "of each image");
-DEFINE_int32(samples_per_pixel, 256, "of each image");
-DEFINE_int32(epochs, 100, "of the published recipe");
-DEFINE_double(max_seconds, 60.0, "of our fits");
-DEFINE_double(largest_flip, 0.2, "what the error maps show as white");
-DEFINE_uint64(seed, 1, "of the fits");
-DEFINE_int32(threads, 0, "0: one for each core");
+#include "table.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr char kUsage[] =
+const std::string kUsage =
     R"(picture: a sphere with a material, with the published recipe's network, and with ours.
 
   picture --out_dir=results
   picture --out_dir=results --sgd=parameters.csv --environment=studio.exr sgd:chrome-steel
 
-The arguments are materials. picture.png has a row for each: the material, the network of the
-published recipe (problems/nbrdf_adam.flags, solved by our own Adam), ours (the default problem), and
-the FLIP error maps of the two. picture.md has the numbers. All images of a row follow the same
-paths, so that they differ by the networks alone.
-)";
+The arguments are materials; without any, two built-in ones. picture.png has a row for each: the
+material, the network of the published recipe (problems/nbrdf_adam.flags, fitted by our own Adam), ours
+(the default problem), and the FLIP error maps of the two. picture.md has the numbers. All images of a
+row follow the same paths, so that they differ by the networks alone.
+)" + std::string(kMaterialsHelp);
 
-constexpr const char* kDefaultMaterials[] = {"builtin:red-satin-plastic",
-                                             "builtin:polished-chromium"};
+const Arguments kDefaultMaterials = {"builtin:red-satin-plastic", "builtin:polished-chromium"};
+
+struct Options {
+  std::string scene = "problems/scenes/sphere.json", environment;
+  int film_width = 256, samples_per_pixel = 256;
+  std::optional<int> epochs;
+  double max_seconds = 60.0, max_flip = 0.2;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::string sgd;
+};
+
+Fields FieldsOf(Options* o) {
+  Fields fields;
+  fields.Add(Text("scene", &o->scene, "scene file, of one material"));
+  fields.Add(Text("environment", &o->environment,
+                  "OpenEXR file that takes the place of the scene's environment light"));
+  fields.Add(Integer("film_width", &o->film_width, AtLeast(kSsimWindow), "pixels of each image"));
+  fields.Add(Integer("samples_per_pixel", &o->samples_per_pixel, AtLeast(1), "of each image"));
+  fields.Add(OverridingInteger("epochs", &o->epochs, AtLeast(0), "epochs of the published recipe"));
+  fields.Add(Number("max_seconds", &o->max_seconds, Above(0.0), "time for each of our fits"));
+  fields.Add(
+      Number("max_flip", &o->max_flip, Above(0.0), "FLIP that the error maps show as white"));
+  fields.Add(Integer("seed", &o->seed, AtLeast(0), "of the fits"));
+  fields.Add(Integer("threads", &o->threads, AtLeast(0), "0: one for each core"));
+  fields.Add(Text("sgd", &o->sgd, kSgdHelp));
+  return fields;
+}
 
 struct FittedNetwork {
   NeuralBrdf network;
   double seconds;
 };
 
-FittedNetwork FitPublished(const Brdf& material) {
-  FitProblem problem;
-  problem.encoding = Encoding::kCartesian;
-  problem.activation = Activation::kRelu;
-  problem.initialization = Initialization::kNbrdf;
-  problem.energy_weight = 0.0;
-  problem.sampling = Sampling::kUniform;
-  problem.samples = 640000;
-  problem.seed = FLAGS_seed;
-  FitOptions options;
-  options.solver = Solver::kAdam;
-  options.max_iterations = FLAGS_epochs;
-  options.threads = FLAGS_threads;
-  const Fit fit = FitBrdf(material, problem, options);
+FittedNetwork Fitted(const Brdf& material, FitSetup setup, const Options& options) {
+  setup.problem.sampling.seed = options.seed;
+  setup.options.threads = options.threads;
+  const Fit fit = FitBrdf(material, setup.problem, setup.options);
   return {fit.network, fit.summary.seconds};
 }
 
-FittedNetwork FitOurs(const Brdf& material) {
-  FitProblem problem;
-  problem.encoding = EncodingFor(material);
-  problem.seed = FLAGS_seed;
-  FitOptions options;
-  options.max_seconds = FLAGS_max_seconds;
-  options.threads = FLAGS_threads;
-  const Fit fit = FitBrdf(material, problem, options);
-  return {fit.network, fit.summary.seconds};
+FittedNetwork FitPublished(const Brdf& material, const Options& options) {
+  FitSetup setup = ShippedProblem("nbrdf_adam");
+  if (options.epochs) setup.options.schedule.max_iterations = *options.epochs;
+  return Fitted(material, setup, options);
+}
+
+FittedNetwork FitOurs(const Brdf& material, const Options& options) {
+  FitSetup setup;
+  setup.options.schedule.max_seconds = options.max_seconds;
+  return Fitted(material, setup, options);
 }
 
 // Black over red and yellow to white.
@@ -89,12 +95,12 @@ std::array<float, 3> Heat(double value) {
   return {part(0.0), part(1.0), part(2.0)};
 }
 
-Image ErrorMap(const Image& reference, const Image& test) {
+Image ErrorMap(const Image& reference, const Image& test, double max_flip) {
   const std::vector<double> flip = FlipMap(reference, test);
   Image map(reference.width, reference.height);
   for (std::size_t i = 0; i < flip.size(); ++i) {
-    const auto color = Heat(flip[i] / FLAGS_largest_flip);
-    std::copy(color.begin(), color.end(), map.rgb.begin() + std::ptrdiff_t(3 * i));
+    const auto color = Heat(flip[i] / max_flip);
+    std::copy(color.begin(), color.end(), map.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
   return map;
 }
@@ -134,29 +140,31 @@ Image Exposed(Image image, double exposure) {
   return image;
 }
 
-// Renders the scene with whatever takes the material's place, along the paths that suit the material.
+// Renders the scene with the material or a network in its place, always along paths that suit the material.
 class Studio {
  public:
-  Studio(const Scene& scene, const Brdf& material)
-      : scene_(scene), proposal_(FitLobeProposal(material)) {}
+  Studio(const Scene& scene, const Brdf& material, const Options& options)
+      : scene_(scene), proposal_(FitLobeProposal(material)) {
+    options_.samples_per_pixel = options.samples_per_pixel;
+    options_.threads = options.threads;
+  }
 
   Image Photograph(const std::function<std::unique_ptr<Brdf>()>& make) const {
-    RenderOptions options;
-    options.samples_per_pixel = FLAGS_samples_per_pixel;
-    options.threads = FLAGS_threads;
     const auto open = [&](const std::string&) { return OpenedMaterial{make(), proposal_}; };
-    return Render(scene_, open, options).image;
+    return Render(scene_, open, options_).image;
   }
 
  private:
   const Scene& scene_;
   LobeProposal proposal_;
+  RenderOptions options_;
 };
 
 // A row of the picture, and two of the table.
-Image RunMaterial(const Scene& scene, const MaterialSource& source, Table* table) {
+Image RunMaterial(const Scene& scene, const MaterialSource& source, const Options& options,
+                  Table* table) {
   const std::unique_ptr<Brdf> material = OpenBrdf(source.source);
-  const Studio studio(scene, *material);
+  const Studio studio(scene, *material, options);
   const Image reference = studio.Photograph([&] { return OpenBrdf(source.source); });
   const double exposure = DisplayExposure(reference);
   const Image exposed_reference = Exposed(reference, exposure);
@@ -166,39 +174,35 @@ Image RunMaterial(const Scene& scene, const MaterialSource& source, Table* table
         studio.Photograph([&] { return std::make_unique<NeuralBrdf>(fit.network); });
     AddRow(source.name, method, fit.seconds, CompareImages(reference, image), table);
     images.push_back(Exposed(image, exposure));
-    maps.push_back(ErrorMap(exposed_reference, images.back()));
+    maps.push_back(ErrorMap(exposed_reference, images.back(), options.max_flip));
     std::fprintf(stderr, "%s, %s: %.3g s\n", source.name.c_str(), method, fit.seconds);
   };
-  add("published recipe", FitPublished(*material));
-  add("ours", FitOurs(*material));
+  add("published recipe", FitPublished(*material, options));
+  add("ours", FitOurs(*material, options));
   images.insert(images.end(), maps.begin(), maps.end());
   return Beside(images);
 }
 
-void Run(const std::vector<std::string>& arguments) {
-  if (!(FLAGS_largest_flip > 0.0)) Fail("largest_flip must be > 0");
-  std::vector<std::string> texts = arguments;
-  if (texts.empty()) texts = {std::begin(kDefaultMaterials), std::end(kDefaultMaterials)};
-  for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
-  const Scene scene = ReadSmallScene(FLAGS_scene, FLAGS_environment, FLAGS_film_width);
-  if (scene.materials.size() != 1) Fail(FLAGS_scene, ": must have one material");
+void Run(const Options& options, const Arguments& arguments, const Output& output) {
+  const Scene scene = ReadSmallScene(options.scene, options.environment, options.film_width);
+  if (scene.materials.size() != 1) Fail(options.scene, ": must have one material");
   Table table(
       {"material", "network", "fit, s", "RMSE", "PSNR, dB", "SSIM", "FLIP", "Delta E 2000"});
   std::vector<Image> rows;
-  for (const MaterialSource& material : ParseMaterials(texts)) {
-    rows.push_back(RunMaterial(scene, material, &table));
+  for (const MaterialSource& material : ParseMaterials(arguments, kDefaultMaterials, options.sgd)) {
+    rows.push_back(RunMaterial(scene, material, options, &table));
   }
-  WritePng(OutputPath("picture.png"), Below(rows));
-  WriteReport(
+  WritePng(output.Path("picture.png"), Below(rows));
+  output.WriteReport(
       "picture",
       StrCat("Left to right: the material, the published recipe's network, ours, FLIP of the "
              "two from 0 (black) to ",
-             FLAGS_largest_flip, " (white).\n\n", table.Markdown()));
+             options.max_flip, " (white).\n\n", table.Markdown()));
 }
 
 }  // namespace
 }  // namespace pbnbrdf
 
 int main(int argc, char** argv) {
-  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::FieldsOf, pbnbrdf::Run);
 }

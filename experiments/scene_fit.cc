@@ -6,59 +6,77 @@
 #include <map>
 
 #include "base/text.h"
-#include "comparison.h"
-#include "default_materials.h"
+#include "curves.h"
 #include "experiment.h"
 #include "fit_log.h"
+#include "materials.h"
+#include "option_fields.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/metrics/image_metrics.h"
 #include "pbnbrdf/render/demand.h"
 #include "pbnbrdf/solve/fit.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "small_scene.h"
-
-DEFINE_string(scenes, "problems/scenes/sphere.json,problems/scenes/gallery.json",
-              "scene files, separated by commas");
-DEFINE_string(environment, "", "OpenEXR file in place of the scenes' own environment");
-DEFINE_string(sgd, "", "CSV of SGD parameters, for materials sgd:NAME");
-DEFINE_string(slot, "satin-gold",
-              "the material that others take the place of in scenes that haven't got them");
-DEFINE_uint64(samples, 12000,
-              "training samples of fits for all angles; fits for the scene: a third");
-DEFINE_string(seeds, "1,2,3", "seeds of the fits");
-DEFINE_int32(film_width, 192, "of the images, in place of the scenes' own");
-DEFINE_int32(samples_per_pixel, 64, "of the images");
-DEFINE_double(scene_floor, pbnbrdf::FitProblem().asked_floor,
-              "part of the samples that isn't the scene's");
-DEFINE_double(max_seconds, 60.0, "of each fit");
-DEFINE_int32(threads, 0, "0: one for each core");
+#include "table.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr char kUsage[] =
+const std::string kUsage =
     R"(scene_fit: fits for a scene beside fits for all angles, by the error of the image.
 
   scene_fit --out_dir=results
   scene_fit --out_dir=results --scenes=problems/scenes/sphere.json --sgd=parameters.csv sgd:chrome-steel
 
-The arguments are materials. Each is fitted in each scene: where the scene has it, or else in the
-place of --slot, or of the only material. Images show one network, and all other materials as they
-are. They are rendered along the same paths, so that they differ by the network alone. Each fit is a
-row of scene_fit.csv as soon as it is done; scene_fit.md has the medians of the seeds.
-)";
+The arguments are materials; without any, a few built-in ones. Each is fitted in each scene. Where the
+scene doesn't have it, it takes the place of the material named by --slot, or of the only one. Images
+show one network, and all other materials as they are. They follow the same paths, so that they differ
+by the network alone. Each fit is a row of scene_fit.csv as soon as it is done; scene_fit.md has the
+medians of the seeds.
+)" + std::string(kMaterialsHelp);
 
-constexpr const char* kDefaultMaterials[] = {"builtin:satin-gold",
-                                             "builtin:red-satin-plastic",
-                                             "builtin:blue-plastic",
-                                             "builtin:polished-chromium",
-                                             "builtin:ivory-computer-plastic",
-                                             "builtin:rough-iron",
-                                             "builtin:glossy-grey-paper",
-                                             "builtin:white-sand",
-                                             "builtin:varnished-plywood"};
+const Arguments kDefaultMaterials = {"builtin:satin-gold",
+                                     "builtin:red-satin-plastic",
+                                     "builtin:blue-plastic",
+                                     "builtin:polished-chromium",
+                                     "builtin:ivory-computer-plastic",
+                                     "builtin:rough-iron",
+                                     "builtin:glossy-grey-paper",
+                                     "builtin:white-sand",
+                                     "builtin:varnished-plywood"};
 
-// What a fit draws its samples from, and what part of --samples.
+struct Options {
+  std::vector<std::string> scenes = {"problems/scenes/sphere.json", "problems/scenes/gallery.json"};
+  std::string environment, slot = "satin-gold";
+  std::uint64_t samples = 12000;
+  std::vector<int> seeds = {1, 2, 3};
+  int film_width = 192, samples_per_pixel = 64;
+  double scene_floor = SamplingOptions{}.asked_floor, max_seconds = 60.0;
+  int threads = 0;
+  std::string sgd;
+};
+
+Fields FieldsOf(Options* o) {
+  Fields fields;
+  fields.Add(Texts("scenes", &o->scenes, "scene files"));
+  fields.Add(Text("environment", &o->environment,
+                  "OpenEXR file that takes the place of the scenes' environment light"));
+  fields.Add(Text("slot", &o->slot,
+                  "the scene's material whose place is taken by one that the scene doesn't have"));
+  fields.Add(Integer("samples", &o->samples, AtLeast(3),
+                     "training samples of uniform fits for all angles; the others have a third"));
+  fields.Add(Integers("seeds", &o->seeds, AtLeast(1), "seeds of the fits"));
+  fields.Add(Integer("film_width", &o->film_width, AtLeast(kSsimWindow), "pixels of each image"));
+  fields.Add(Integer("samples_per_pixel", &o->samples_per_pixel, AtLeast(1), "of each image"));
+  fields.Add(Number("scene_floor", &o->scene_floor, Between(0.0, 1.0),
+                    "part of a scene fit's samples that is drawn from all angles all the same"));
+  fields.Add(Number("max_seconds", &o->max_seconds, Above(0.0), "time for each fit"));
+  fields.Add(Integer("threads", &o->threads, AtLeast(0), "0: one for each core"));
+  fields.Add(Text("sgd", &o->sgd, kSgdHelp));
+  return fields;
+}
+
+// What a fit draws its samples from, and the number of them, --samples over `divisor`.
 struct Method {
   const char* name;
   Sampling sampling;
@@ -75,37 +93,39 @@ struct ImageError {
   double rmse, flip;
 };
 
-// How paths leave materials, by their source: of anisotropic ones it takes a second to find out.
+// How paths leave materials, by their source. Kept, since it takes a second to find out for anisotropic ones.
 using Proposals = std::map<std::string, LobeProposal>;
 
-// A material in a scene, as it is and as networks have it.
+// A material in a scene: the image of the material itself, and those of networks in its place.
 class Case {
  public:
-  // The proposals, which grow with the materials that paths get to, must outlive this.
-  Case(Scene scene, Proposals& proposals, std::size_t slot, const std::string& source)
-      : scene_(std::move(scene)),
+  // options and the proposals, which grow with the materials that paths get to, must outlive this.
+  Case(const Options& options, Scene scene, Proposals& proposals, std::size_t slot,
+       const std::string& source)
+      : options_(options),
+        scene_(std::move(scene)),
         proposals_(proposals),
         slot_(slot),
         truth_(OpenBrdf(source)),
         proposal_(FitLobeProposal(*truth_)) {
     scene_.materials[slot_].source = kSlot;
     demand_ = MeasureDemand(scene_, Opener([&] { return OpenBrdf(source); }),
-                            {.threads = FLAGS_threads})[slot_];
+                            {.threads = options_.threads})[slot_];
     if (!demand_.angles) Fail("the scene doesn't show it");
     reference_ = Image(Opener([&] { return OpenBrdf(source); }));
   }
 
-  ImageError Run(const Method& method, std::size_t seed) const {
+  ImageError Run(const Method& method, std::uint64_t seed) const {
     FitProblem problem;
-    problem.encoding = EncodingFor(*truth_);
-    problem.sampling = method.sampling;
-    problem.samples = std::max<std::size_t>(FLAGS_samples / method.divisor, 1);
-    problem.seed = seed;
-    if (method.for_scene) problem.asked = demand_.angles;
-    problem.asked_floor = FLAGS_scene_floor;
+    SamplingOptions* sampling = &problem.sampling;
+    sampling->angles = method.sampling;
+    sampling->samples = options_.samples / method.divisor;
+    sampling->seed = seed;
+    if (method.for_scene) sampling->asked = demand_.angles;
+    sampling->asked_floor = options_.scene_floor;
     FitOptions options;
-    options.threads = FLAGS_threads;
-    options.max_seconds = FLAGS_max_seconds;
+    options.threads = options_.threads;
+    options.schedule.max_seconds = options_.max_seconds;
     const Fit fit = FitBrdf(*truth_, problem, options);
     const ImageErrors errors = CompareImages(
         reference_, Image(Opener([&] { return std::make_unique<NeuralBrdf>(fit.network); })));
@@ -117,8 +137,8 @@ class Case {
  private:
   static constexpr char kSlot[] = "the material";
 
-  // Opens all materials as the scene says, but for the one, which sends paths its own way whatever
-  // takes its place.
+  // Opens all materials as the scene says, and the one of this case with `open`. Paths leave that one in
+  // the same ways whatever takes its place.
   template <typename Open>
   MaterialOpener Opener(Open open) const {
     return [this, open](const std::string& source) -> OpenedMaterial {
@@ -134,11 +154,12 @@ class Case {
 
   pbnbrdf::Image Image(const MaterialOpener& open) const {
     RenderOptions options;
-    options.samples_per_pixel = FLAGS_samples_per_pixel;
-    options.threads = FLAGS_threads;
+    options.samples_per_pixel = options_.samples_per_pixel;
+    options.threads = options_.threads;
     return Render(scene_, open, options).image;
   }
 
+  const Options& options_;
   Scene scene_;
   Proposals& proposals_;
   std::size_t slot_;
@@ -156,27 +177,29 @@ struct Row {
 };
 
 // Where the material goes.
-std::size_t SlotOf(const Scene& scene, const std::string& source) {
+std::size_t SlotOf(const Scene& scene, const std::string& source, const std::string& default_slot) {
   if (scene.materials.size() == 1) return 0;
   const auto find = [&](auto has) {
-    return std::size_t(std::find_if(scene.materials.begin(), scene.materials.end(), has) -
-                       scene.materials.begin());
+    return static_cast<std::size_t>(
+        std::find_if(scene.materials.begin(), scene.materials.end(), has) -
+        scene.materials.begin());
   };
   std::size_t slot = find([&](const SceneMaterial& m) { return m.source == source; });
   if (slot == scene.materials.size()) {
-    slot = find([](const SceneMaterial& m) { return m.name == FLAGS_slot; });
+    slot = find([&](const SceneMaterial& m) { return m.name == default_slot; });
   }
-  if (slot == scene.materials.size()) Fail("slot: the scene has no material '", FLAGS_slot, "'");
+  if (slot == scene.materials.size()) Fail("slot: the scene has no material '", default_slot, "'");
   return slot;
 }
 
-Row RunCase(const Case& one, const std::string& scene, const std::string& material, FitLog* log) {
+Row RunCase(const Options& options, const Case& one, const std::string& scene,
+            const std::string& material, FitLog* log) {
   Row row = {scene, material, one.share(), {}};
   for (const Method& method : kMethods) {
     std::vector<double> rmse, flip;
-    for (const std::size_t seed : ParseCounts("seeds", FLAGS_seeds)) {
-      const ImageError error = one.Run(method, seed);
-      log->AddRow({scene, material, method.name, StrCat(FLAGS_samples / method.divisor),
+    for (int seed : options.seeds) {
+      const ImageError error = one.Run(method, static_cast<std::uint64_t>(seed));
+      log->AddRow({scene, material, method.name, StrCat(options.samples / method.divisor),
                    StrCat(seed), FormatNumber(error.rmse), FormatNumber(error.flip)});
       rmse.push_back(error.rmse);
       flip.push_back(error.flip);
@@ -221,34 +244,32 @@ std::string Markdown(const std::vector<Row>& rows) {
   return table.Markdown();
 }
 
-void Run(const std::vector<std::string>& arguments) {
-  if (FLAGS_samples < 3) Fail("samples = ", FLAGS_samples, "; must be >= 3");
-  std::vector<std::string> texts = arguments;
-  if (texts.empty()) texts = {std::begin(kDefaultMaterials), std::end(kDefaultMaterials)};
-  for (std::string& text : texts) text = WithSgdPath(text, FLAGS_sgd);
-  const std::vector<MaterialSource> materials = ParseMaterials(texts);
-  FitLog log(OutputPath("scene_fit.csv"),
+void Run(const Options& options, const Arguments& arguments, const Output& output) {
+  const std::vector<MaterialSource> materials =
+      ParseMaterials(arguments, kDefaultMaterials, options.sgd);
+  FitLog log(output.Path("scene_fit.csv"),
              {"scene", "material", "method", "samples", "seed", "rmse", "flip"});
   std::vector<Row> rows;
-  for (const std::string& path : Split(FLAGS_scenes, ',')) {
-    const Scene scene = ReadSmallScene(path, FLAGS_environment, FLAGS_film_width);
+  for (const std::string& path : options.scenes) {
+    const Scene scene = ReadSmallScene(path, options.environment, options.film_width);
     Proposals proposals;
     const std::string name = std::filesystem::path(path).stem();
     for (const MaterialSource& material : materials) {
-      const std::size_t slot = SlotOf(scene, material.source);
-      rows.push_back(
-          RunCase(Case(scene, proposals, slot, material.source), name, material.name, &log));
+      const std::size_t slot = SlotOf(scene, material.source, options.slot);
+      rows.push_back(RunCase(options, Case(options, scene, proposals, slot, material.source), name,
+                             material.name, &log));
     }
   }
-  WriteReport("scene_fit",
-              StrCat(FLAGS_samples, " training samples, or a third; seeds ", FLAGS_seeds,
-                     "; images ", FLAGS_film_width, " pixels wide, ", FLAGS_samples_per_pixel,
-                     " samples a pixel.\n\n", Markdown(rows)));
+  output.WriteReport(
+      "scene_fit",
+      StrCat(options.samples, " training samples, or a third; seeds ", Joined(options.seeds, ","),
+             "; images ", options.film_width, " pixels wide, ", options.samples_per_pixel,
+             " samples a pixel.\n\n", Markdown(rows)));
 }
 
 }  // namespace
 }  // namespace pbnbrdf
 
 int main(int argc, char** argv) {
-  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::FieldsOf, pbnbrdf::Run);
 }

@@ -1,236 +1,253 @@
 // solver_comparison.cc: held-out error against time of every solver, and of another implementation.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <memory>
+#include <optional>
 
 #include "base/text.h"
 #include "comparison.h"
 #include "experiment.h"
+#include "fit_log.h"
+#include "materials.h"
+#include "option_fields.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
-#include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/open_brdf.h"
-
-DEFINE_string(method, "nbrdf",
-              "nbrdf: as the fit's defaults have it | pbnbrdf: with the chromaticity term too; for "
-              "adam and the peer the published set-up of that name");
-DEFINE_string(solvers, "tiny_lm,lm,lbfgs,lbfgs_absolute,adam",
-              "any of these; lbfgs_absolute minimises the papers' own sum");
-DEFINE_string(hidden, "21,21", "hidden layers' sizes of each network: '8,8,8 21,21 64,64,64'");
-DEFINE_string(seeds, "1", "seeds of our fits");
-DEFINE_int32(threads, 2, "of each fit, the peer's too");
-DEFINE_double(max_seconds, 60.0, "of each of our fits");
-DEFINE_int32(lm_iterations, pbnbrdf::FitOptions{}.max_iterations, "of tiny_lm and lm");
-DEFINE_int32(lbfgs_iterations, 10000, "of lbfgs and lbfgs_absolute");
-DEFINE_int32(adam_epochs, 100, "of adam");
-DEFINE_uint64(adam_samples, 640000, "training samples of adam");
-DEFINE_uint64(heldout_samples, 200000, "held-out samples of a fit's last error");
-DEFINE_string(peer, "", "script of another implementation (peer.h); '': none");
-DEFINE_string(peer_python, "/usr/bin/python3", "interpreter that runs it");
-DEFINE_string(peer_flags, "", "more flags for it, separated by blanks");
+#include "problems.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr char kUsage[] =
+const std::string kUsage =
     R"(solver_comparison: held-out error against time of every solver, beside another implementation.
 
   solver_comparison --out_dir=results builtin:satin-gold metal=sgd:parameters.csv#chrome-steel
   solver_comparison --out_dir=results --peer=peer_train.py --seeds=1,2,3 merl/*.binary
 
-The arguments are materials, anything that 'pbnbrdf fit --material' takes, CLASS= in front of it if
-wanted; without any, a few built-in ones. Each is tabulated as a MERL file, which all fit, one after
-the other. Writes solver_comparison.csv, with a row for each iteration, solver_comparison.md and
-solver_comparison.svg.
-)";
+The arguments are materials; without any, a few built-in ones. Each is tabulated as a MERL file, and
+that is what every solver fits, one after the other. Writes solver_comparison.csv, with a row for each
+iteration, solver_comparison.md and solver_comparison.svg.
+)" + std::string(kMaterialsHelp);
 
-struct SolverSetting {
-  Solver solver;
-  Loss loss;
-};
-
-constexpr NameTable<SolverSetting, 5> kSettings = {
-    {{"tiny_lm", {Solver::kTinyLm, Loss::kSoftL1}},
-     {"lm", {Solver::kLm, Loss::kSoftL1}},
-     {"lbfgs", {Solver::kLbfgs, Loss::kSoftL1}},
-     {"lbfgs_absolute", {Solver::kLbfgs, Loss::kAbsolute}},
-     {"adam", {Solver::kAdam, Loss::kAbsolute}}}};
+const Arguments kDefaultMaterials = {"builtin:ivory-computer-plastic", "builtin:red-satin-plastic",
+                                     "builtin:satin-gold"};
 
 enum class Method { kNbrdf, kPbnbrdf };
 
 constexpr NameTable<Method, 2> kMethods = {
     {{"nbrdf", Method::kNbrdf}, {"pbnbrdf", Method::kPbnbrdf}}};
 
-struct FitSetUp {
-  FitProblem problem;
-  FitOptions options;
+struct Options {
+  Method method = Method::kNbrdf;
+  std::vector<std::string> solvers = {"lm", "ceres_lm", "ceres_lbfgs", "ceres_lbfgs_absolute",
+                                      "adam"};
+  std::vector<std::vector<int>> hidden = {{21, 21}};
+  std::vector<int> seeds = {1};
+  int threads = 2;
+  double max_seconds = 60.0;
+  int lm_iterations = ScheduleOptions{}.max_iterations;
+  int lbfgs_iterations = 10000;
+  std::optional<int> adam_epochs;
+  std::optional<std::uint64_t> adam_samples;
+  std::uint64_t heldout_samples = 200000;
+  std::string peer, peer_python = "/usr/bin/python3", peer_flags;
+  std::string sgd;
 };
 
-// The published problem: problems/nbrdf_adam.flags and pbnbrdf_adam.flags.
-FitProblem PublishedProblem(Method method) {
-  FitProblem problem;
-  problem.activation = Activation::kRelu;
-  problem.initialization = Initialization::kNbrdf;
-  problem.sampling = Sampling::kUniform;
-  problem.samples = FLAGS_adam_samples;
-  problem.encoding = method == Method::kNbrdf ? Encoding::kCartesian : Encoding::kReciprocal;
-  problem.chromaticity_weight = method == Method::kNbrdf ? 0.0 : 1.0;
-  problem.energy_weight = method == Method::kNbrdf ? 0.0 : 1.0;
-  problem.energy_theta = 32;
-  problem.energy_phi = 16;
-  return problem;
+Fields FieldsOf(Options* o) {
+  Fields fields;
+  fields.Add(
+      Choice("method", &o->method, kMethods,
+             "problem: nbrdf is the default one for our solvers and problems/nbrdf_adam.flags "
+             "for adam, pbnbrdf has problems/pbnbrdf.flags and problems/pbnbrdf_adam.flags; "
+             "the peer gets the name"));
+  fields.Add(Texts("solvers", &o->solvers,
+                   "any of lm, ceres_lm, ceres_lbfgs, ceres_lbfgs_absolute and adam; "
+                   "ceres_lbfgs_absolute minimises the papers' own sum of absolute values"));
+  fields.Add(Networks("hidden", &o->hidden,
+                      "sizes of the hidden layers of each network: '8,8,8 21,21 64,64,64'"));
+  fields.Add(Integers("seeds", &o->seeds, AtLeast(1), "seeds of our fits"));
+  fields.Add(Integer("threads", &o->threads, AtLeast(0), "of each fit, and of the peer"));
+  fields.Add(Number("max_seconds", &o->max_seconds, Above(0.0), "time for each of our fits"));
+  fields.Add(Integer("lm_iterations", &o->lm_iterations, AtLeast(0),
+                     "iterations of lm and ceres_lm, at most"));
+  fields.Add(Integer("lbfgs_iterations", &o->lbfgs_iterations, AtLeast(0),
+                     "iterations of ceres_lbfgs and ceres_lbfgs_absolute, at most"));
+  fields.Add(OverridingInteger("adam_epochs", &o->adam_epochs, AtLeast(0), "epochs of adam"));
+  fields.Add(
+      OverridingInteger("adam_samples", &o->adam_samples, AtLeast(1), "training samples of adam"));
+  fields.Add(Integer("heldout_samples", &o->heldout_samples, AtLeast(1),
+                     "held-out samples that the error of a finished fit is measured on"));
+  fields.Add(
+      Text("peer", &o->peer,
+           "script of another implementation, run as experiments/lib/peer.h says; '': none"));
+  fields.Add(Text("peer_python", &o->peer_python, "interpreter that runs the script"));
+  fields.Add(Text("peer_flags", &o->peer_flags, "more flags for the script, separated by blanks"));
+  fields.Add(Text("sgd", &o->sgd, kSgdHelp));
+  return fields;
 }
 
-int Iterations(Solver solver) {
-  if (solver == Solver::kAdam) return FLAGS_adam_epochs;
-  return solver == Solver::kLbfgs ? FLAGS_lbfgs_iterations : FLAGS_lm_iterations;
+// What a name in --solvers stands for.
+struct SolverSetting {
+  const char* solver;
+  Loss loss;
+};
+
+constexpr NameTable<SolverSetting, 5> kSettings = {
+    {{"lm", {"lm", Loss::kSoftL1}},
+     {"ceres_lm", {"ceres_lm", Loss::kSoftL1}},
+     {"ceres_lbfgs", {"ceres_lbfgs", Loss::kSoftL1}},
+     {"ceres_lbfgs_absolute", {"ceres_lbfgs", Loss::kAbsolute}},
+     {"adam", {"adam", Loss::kAbsolute}}}};
+
+// Adam's is the published recipe.
+FitSetup AdamSetup(const Options& options) {
+  FitSetup setup = ShippedProblem(options.method == Method::kNbrdf ? "nbrdf_adam" : "pbnbrdf_adam");
+  if (options.adam_epochs) setup.options.schedule.max_iterations = *options.adam_epochs;
+  if (options.adam_samples) setup.problem.sampling.samples = *options.adam_samples;
+  return setup;
 }
 
-FitSetUp SetUp(const SolverSetting& setting, Method method, const std::vector<int>& hidden,
-               std::size_t seed) {
-  FitSetUp set_up;
-  if (setting.solver == Solver::kAdam) {
-    set_up.problem = PublishedProblem(method);
+FitSetup Setup(const Options& options, const SolverSetting& setting, const std::vector<int>& hidden,
+               int seed) {
+  FitSetup setup;
+  if (setting.solver == std::string_view("adam")) {
+    setup = AdamSetup(options);
   } else {
-    set_up.problem.chromaticity_weight = method == Method::kNbrdf ? 0.0 : 0.1;
+    if (options.method == Method::kPbnbrdf) setup = ShippedProblem("pbnbrdf");
+    const bool is_lbfgs = setting.solver == std::string_view("ceres_lbfgs");
+    setup.options.schedule.max_iterations =
+        is_lbfgs ? options.lbfgs_iterations : options.lm_iterations;
   }
-  set_up.problem.loss = setting.loss;
-  set_up.problem.hidden = hidden;
-  set_up.problem.seed = seed;
-  set_up.options.solver = setting.solver;
-  set_up.options.max_iterations = Iterations(setting.solver);
-  set_up.options.max_seconds = FLAGS_max_seconds;
-  set_up.options.threads = FLAGS_threads;
-  ValidateFit(set_up.problem, set_up.options);
-  return set_up;
+  setup.problem.terms.loss = setting.loss;
+  setup.problem.network.hidden = hidden;
+  setup.problem.sampling.seed = static_cast<std::uint64_t>(seed);
+  setup.options.solver = setting.solver;
+  setup.options.schedule.max_seconds = options.max_seconds;
+  setup.options.threads = options.threads;
+  ValidateFit(setup.problem, setup.options);
+  return setup;
 }
 
 // What is asked for, all of it checked before the first fit.
 struct Plan {
+  Options options;
   std::vector<MaterialSource> materials;
   std::vector<std::pair<std::string, SolverSetting>> solvers;
-  std::vector<std::vector<int>> networks;
-  std::vector<std::size_t> seeds;
-  Method method;
-  Peer peer;
-  bool has_peer = false;
+  std::optional<Peer> peer;
 };
 
-void PlanPeer(Plan* plan) {
-  plan->peer = {FLAGS_peer_python, FLAGS_peer, FLAGS_method, FLAGS_threads, {}};
-  for (const std::string& flag : Split(FLAGS_peer_flags, ' ')) {
-    if (!flag.empty()) plan->peer.more_flags.push_back(flag);
+std::optional<Peer> PlanPeer(const Options& options) {
+  if (options.peer.empty()) return std::nullopt;
+  const std::string method(NameOf(kMethods, options.method));
+  Peer peer = {options.peer_python, options.peer, method, options.threads, {}};
+  for (const std::string& flag : Split(options.peer_flags, ' ')) {
+    if (!flag.empty()) peer.more_flags.push_back(flag);
   }
-  if (FLAGS_peer.empty()) return;
-  const std::string why_not = plan->peer.WhyUnavailable();
-  plan->has_peer = why_not.empty();
-  if (!plan->has_peer) std::fprintf(stderr, "left out, the peer: %s\n", why_not.c_str());
+  const std::string why_not = peer.WhyUnavailable();
+  if (why_not.empty()) return peer;
+  std::fprintf(stderr, "without the peer: %s\n", why_not.c_str());
+  return std::nullopt;
 }
 
-Plan MakePlan(const std::vector<std::string>& materials) {
-  Plan plan;
-  const std::vector<std::string> few = {"builtin:ivory-computer-plastic",
-                                        "builtin:red-satin-plastic", "builtin:satin-gold"};
-  plan.materials = ParseMaterials(materials.empty() ? few : materials);
-  for (const std::string& name : Split(FLAGS_solvers, ',')) {
+Plan MakePlan(const Options& options, const Arguments& arguments) {
+  Plan plan = {options, ParseMaterials(arguments, kDefaultMaterials, options.sgd), {}, {}};
+  if (options.hidden.empty()) Fail("hidden: names no network, as 21,21 does");
+  for (const std::string& name : options.solvers) {
     plan.solvers.emplace_back(name, ParseName(kSettings, "solvers", name));
+    for (const std::vector<int>& hidden : options.hidden) {
+      Setup(options, plan.solvers.back().second, hidden, 1);
+    }
   }
-  plan.networks = ParseNetworks("hidden", FLAGS_hidden);
-  plan.seeds = ParseCounts("seeds", FLAGS_seeds);
-  plan.method = ParseName(kMethods, "method", FLAGS_method);
-  for (const auto& [name, setting] : plan.solvers) {
-    for (const std::vector<int>& hidden : plan.networks) SetUp(setting, plan.method, hidden, 1);
-  }
-  PlanPeer(&plan);
+  plan.peer = PlanPeer(options);
   return plan;
 }
 
 class Comparison {
  public:
-  explicit Comparison(const Plan& plan)
-      : plan_(plan), csv_path_(OutputPath("solver_comparison.csv")), csv_(csv_path_) {
-    csv_ << CsvLine({"material", "material_class", "solver", "hidden", "seed", "iteration",
-                     "seconds", "cost", "heldout_error"});
-  }
+  Comparison(const Plan& plan, const Output& output)
+      : plan_(plan),
+        output_(output),
+        log_(output.Path("solver_comparison.csv"),
+             {"material", "material_class", "solver", "hidden", "seed", "iteration", "seconds",
+              "cost", "heldout_error"}) {}
 
   void RunMaterial(const MaterialSource& material) {
     const MerlBrdf table = MerlBrdf::Tabulate(*OpenBrdf(material.source));
-    if (plan_.has_peer) RunPeer(material, table);
-    for (const std::vector<int>& hidden : plan_.networks) {
+    if (plan_.peer) RunPeer(material, table);
+    for (const std::vector<int>& hidden : plan_.options.hidden) {
       for (const auto& [name, setting] : plan_.solvers) {
-        for (std::size_t seed : plan_.seeds) {
-          RunFit(material, table, name, SetUp(setting, plan_.method, hidden, seed));
+        for (int seed : plan_.options.seeds) {
+          RunFit(material, table, name, Setup(plan_.options, setting, hidden, seed));
         }
       }
     }
   }
 
   void Report() const {
-    WriteReport("solver_comparison", Preface() + ComparisonMarkdown(fits_, peers_));
-    WriteFigure("solver_comparison", ComparisonFigure(fits_, peers_));
+    output_.WriteReport("solver_comparison", Preface() + ComparisonMarkdown(fits_, peers_));
+    output_.WriteFigure("solver_comparison", ComparisonFigure(fits_, peers_));
   }
 
  private:
   // How the numbers came about, and what failed.
   std::string Preface() const {
-    std::string text = StrCat("Method ", FLAGS_method, ", ", FLAGS_threads, " threads, seeds ",
-                              FLAGS_seeds, "; error: mean |eq. 6| on held-out samples.");
+    std::string text =
+        StrCat("Method ", NameOf(kMethods, plan_.options.method), ", ", plan_.options.threads,
+               " threads, seeds ", Joined(plan_.options.seeds, ","),
+               "; error: mean |eq. 6| on held-out samples.");
     if (!peers_.empty()) {
       text +=
-          " The peer's error is its network's on the same samples, and its own figure the one on "
-          "its own samples and interpolation. Times as fast: the peer's seconds over ours to its "
-          "error. Times as accurate: its error over ours after its seconds.";
+          " The peer's error is that of its network on the same samples as ours; 'its own figure' "
+          "is on its own samples, with its own interpolation of the table. Times as fast: the "
+          "peer's seconds over the seconds in which ours reaches its error. Times as accurate: its "
+          "error over ours when its time has passed.";
     }
-    text += StrCat(" Failed fits: ", failures_.size(), ".\n\n");
-    for (const std::string& failure : failures_) text += "- " + failure + "\n";
-    return text + (failures_.empty() ? "" : "\n");
+    return text + " " + log_.FailuresMarkdown();
   }
 
-  static double HeldoutError(const MerlBrdf& table, const NeuralBrdf& network) {
-    return MeasureErrors(HeldOutSamples(table, FLAGS_heldout_samples, /*seed=*/1), network)
+  double HeldoutError(const MerlBrdf& table, const NeuralBrdf& network) const {
+    return MeasureErrors(HeldOutSamples(table, plan_.options.heldout_samples, /*seed=*/1), network)
         .mean_abs_log_error;
   }
 
   void RunFit(const MaterialSource& material, const MerlBrdf& table, const std::string& solver,
-              FitSetUp set_up) {
+              FitSetup setup) {
     FitRecord record;
     record.material = material.name;
     record.solver = solver;
-    record.hidden = HiddenName(set_up.problem.hidden);
-    record.seed = static_cast<int>(set_up.problem.seed);
+    record.hidden = HiddenName(setup.problem.network.hidden);
+    record.seed = static_cast<int>(setup.problem.sampling.seed);
     const std::string what =
         StrCat(record.material, ", ", solver, ", ", record.hidden, ", seed ", record.seed, ": ");
-    set_up.options.on_iteration = [&](const FitProgress& progress) {
+    setup.options.on_iteration = [&](const FitProgress& progress) {
       record.trace.push_back(progress);
       return true;
     };
     try {
-      const Fit fit = FitBrdf(table, set_up.problem, set_up.options);
+      const Fit fit = FitBrdf(table, setup.problem, setup.options);
       record.seconds = fit.summary.seconds;
       record.error = HeldoutError(table, fit.network);
     } catch (const Error& error) {
-      failures_.push_back(what + error.what());
-      std::fprintf(stderr, "%s\n", failures_.back().c_str());
+      log_.AddFailure(what + error.what());
       return;
     }
     std::fprintf(stderr, "%s%.3g in %.3g s\n", what.c_str(), record.error, record.seconds);
-    WriteTrace(material, solver, record.hidden, set_up.problem.seed, record.trace);
+    LogTrace(material, solver, record.hidden, record.seed, record.trace);
     fits_.push_back(std::move(record));
   }
 
-  // A failure costs the peer's columns of this material only.
+  // Where the peer fails, this material alone has no columns of its.
   void RunPeer(const MaterialSource& material, const MerlBrdf& table) {
-    const std::string table_file = OutputPath("solver_comparison_table.binary");
-    const std::string folder = OutputPath("solver_comparison_peer");
+    const std::string table_file = output_.Path("solver_comparison_table.binary");
+    const std::string folder = output_.Path("solver_comparison_peer");
     table.Write(table_file);
     try {
       std::filesystem::create_directories(folder);
-      PeerResult result = plan_.peer.Train(table_file, folder);
+      PeerResult result = plan_.peer->Train(table_file, folder);
       if (result.network) result.error = HeldoutError(table, *result.network);
-      WriteTrace(material, "peer", kPeerHidden, 0, result.trace);
+      LogTrace(material, "peer", kPeerHidden, 0, result.trace);
       std::fprintf(stderr, "%s, peer: %.3g in %.3g s\n", material.name.c_str(), result.error,
                    result.seconds);
       peers_[material.name] = result;
@@ -241,29 +258,25 @@ class Comparison {
     std::filesystem::remove_all(folder);
   }
 
-  // At once, so that a long run that is stopped has left its rows.
-  void WriteTrace(const MaterialSource& material, const std::string& solver,
-                  const std::string& hidden, std::size_t seed,
-                  const std::vector<FitProgress>& trace) {
+  void LogTrace(const MaterialSource& material, const std::string& solver,
+                const std::string& hidden, int seed, const std::vector<FitProgress>& trace) {
     for (const FitProgress& p : trace) {
-      csv_ << CsvLine({material.name, material.material_class, solver, hidden, StrCat(seed),
-                       StrCat(p.iteration), FormatNumber(p.seconds), FormatNumber(p.cost),
-                       FormatNumber(p.heldout_error)});
+      log_.AddRow({material.name, material.material_class, solver, hidden, StrCat(seed),
+                   StrCat(p.iteration), FormatNumber(p.seconds), FormatNumber(p.cost),
+                   FormatNumber(p.heldout_error)});
     }
-    if (!csv_.flush()) Fail(csv_path_, ": can't be written");
   }
 
   const Plan& plan_;
-  std::string csv_path_;
-  std::ofstream csv_;
+  const Output& output_;
+  FitLog log_;
   std::vector<FitRecord> fits_;
   PeerRecords peers_;
-  std::vector<std::string> failures_;
 };
 
-void Run(const std::vector<std::string>& materials) {
-  const Plan plan = MakePlan(materials);
-  Comparison comparison(plan);
+void Run(const Options& options, const Arguments& arguments, const Output& output) {
+  const Plan plan = MakePlan(options, arguments);
+  Comparison comparison(plan, output);
   for (const MaterialSource& material : plan.materials) comparison.RunMaterial(material);
   comparison.Report();
 }
@@ -272,5 +285,5 @@ void Run(const std::vector<std::string>& materials) {
 }  // namespace pbnbrdf
 
 int main(int argc, char** argv) {
-  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::FieldsOf, pbnbrdf::Run);
 }

@@ -1,8 +1,9 @@
-// stability.cc: thousands of small fits, many of them to what no fit should be asked for: what
-// isn't finite, what fails and how far a gradient is from numeric differences.
+// stability.cc: thousands of small fits, many of them to what no fit should be asked for: what isn't
+// finite, what fails and how far a gradient is from numeric differences.
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -11,24 +12,15 @@
 #include <fstream>
 #include <iostream>
 #include <mutex>
-#include <thread>
 
 #include "base/text.h"
 #include "experiment.h"
+#include "for_each.h"
 #include "pbnbrdf/base/error.h"
 #include "process.h"
 #include "stability_report.h"
 #include "stability_run.h"
-
-DEFINE_int32(runs, 5000, "fits");
-DEFINE_uint64(seeds, 3, "how many seeds take part");
-DEFINE_int32(max_iterations, 12, "of each fit; Adam: epochs");
-DEFINE_uint64(samples, 400, "training samples of each fit");
-DEFINE_int32(jobs, 2, "processes at a time, each of one thread");
-DEFINE_string(sgd, "", "parameters of SGD materials (CSV), which take part too");
-DEFINE_int32(first_run, -1, "internal, of a child process: does the runs from this one on");
-DEFINE_int32(run_count, 0, "internal: so many");
-DEFINE_int32(crash_at, -1, "internal, of tests: this run ends its process as a crash does");
+#include "table.h"
 
 namespace pbnbrdf {
 namespace {
@@ -38,21 +30,40 @@ constexpr char kUsage[] =
 
   stability --out_dir=results --runs=5000 --jobs=2
 
-The runs walk through the product of material, stress, solver, loss, terms, encoding, precision,
-activation, initialization, sampling and seed: each is the one of 16 random combinations that has
-the most pairs of levels that haven't appeared yet (pairwise_walk.h); the report says how many have.
-They run in processes of their own, some at a time: one that crashes, or a run that takes longer
-than two minutes, costs no other run. Writes stability.csv, a row for each run, and stability.md.
+A run has a level of each of these factors: material, stress, solver, loss, terms, encoding, precision,
+activation, initialization, sampling and seed. Of 16 random combinations each run takes the one with
+the most pairs of levels that haven't appeared yet; the report says how many have. Runs are done in
+processes of their own, several at a time: one that crashes, or that takes longer than two minutes,
+costs no other run. Writes stability.csv, a row for each run, and stability.md.
 )";
 
 constexpr int kChunk = 25;          // runs of a process
 constexpr unsigned kTimeout = 120;  // seconds of a run
 constexpr int kSignalStatus = 128;  // of a process that a signal ended, plus the signal
 
-SweepSize Size() {
-  return {.seeds = static_cast<std::size_t>(FLAGS_seeds),
-          .max_iterations = FLAGS_max_iterations,
-          .samples = static_cast<std::size_t>(FLAGS_samples)};
+struct Options {
+  int runs = 5000;
+  SweepSize size;
+  int jobs = 2;
+  std::string sgd;
+  int first_run = -1, run_count = 0, crash_at = -1;
+};
+
+Fields FieldsOf(Options* o) {
+  Fields fields;
+  fields.Add(Integer("runs", &o->runs, AtLeast(1), "fits"));
+  fields.Add(Integer("seeds", &o->size.seeds, AtLeast(1), "how many seeds take part"));
+  fields.Add(Integer("max_iterations", &o->size.max_iterations, AtLeast(0),
+                     "iterations of each fit, at most; of adam, epochs"));
+  fields.Add(Integer("samples", &o->size.samples, AtLeast(1), "training samples of each fit"));
+  fields.Add(Integer("jobs", &o->jobs, AtLeast(1), "processes at a time, each of one thread"));
+  fields.Add(Text("sgd", &o->sgd,
+                  "CSV of parameters of the SGD model, whose materials then take part too"));
+  fields.Group("For child processes and tests");
+  fields.Add(Integer("first_run", &o->first_run, {}, "do the runs from this one on; -1: all"));
+  fields.Add(Integer("run_count", &o->run_count, AtLeast(0), "do so many of them"));
+  fields.Add(Integer("crash_at", &o->crash_at, {}, "crash in this run; -1: in none"));
+  return fields;
 }
 
 std::vector<std::string> FactorNames(const StabilitySweep& sweep) {
@@ -62,14 +73,13 @@ std::vector<std::string> FactorNames(const StabilitySweep& sweep) {
 }
 
 // Does its runs, and writes a row for each to standard output.
-void RunChunk() {
+void RunChunk(const Options& options) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  gflags::SetCommandLineOption("minloglevel", "3");  // Ceres tells of each failure
-  StabilitySweep sweep(Size(), FLAGS_sgd);
-  for (int run = 0; run < FLAGS_first_run + FLAGS_run_count; ++run) {
+  StabilitySweep sweep(options.size, options.sgd);
+  for (int run = 0; run < options.first_run + options.run_count; ++run) {
     const StabilityCase next = sweep.Next();
-    if (run < FLAGS_first_run) continue;
-    if (run == FLAGS_crash_at) std::abort();
+    if (run < options.first_run) continue;
+    if (run == options.crash_at) std::abort();
     alarm(kTimeout);
     StabilityRecord record = RunStabilityCase(next);
     record.run = run;
@@ -84,52 +94,56 @@ struct Chunk {
 // Hands out chunks of runs to child processes and gathers their rows.
 class Sweep {
  public:
-  Sweep() : sweep_(Size(), FLAGS_sgd), csv_path_(OutputPath("stability.csv")), csv_(csv_path_) {
+  Sweep(const Options& options, const Output& output)
+      : options_(options),
+        output_(output),
+        sweep_(options.size, options.sgd),
+        csv_path_(output.Path("stability.csv")),
+        csv_(csv_path_) {
     csv_ << CsvLine(RecordColumns(FactorNames(sweep_)));
-    for (int run = 0; run < FLAGS_runs; ++run) cases_.push_back(sweep_.Next());
-    for (int run = 0; run < FLAGS_runs; run += kChunk) {
-      chunks_.push_back({run, std::min(kChunk, FLAGS_runs - run)});
+    for (int run = 0; run < options.runs; ++run) cases_.push_back(sweep_.Next());
+    for (int run = 0; run < options.runs; run += kChunk) {
+      chunks_.push_back({run, std::min(kChunk, options.runs - run)});
     }
   }
 
   void Run() {
-    std::vector<std::thread> workers;
-    for (int job = 0; job < FLAGS_jobs; ++job) {
-      workers.emplace_back([this] {
-        for (Chunk chunk; Take(&chunk);) Finish(chunk, RunProgram(ChildCommand(chunk)));
-      });
-    }
-    for (std::thread& worker : workers) worker.join();
+    // In child processes Ceres would log each failure.
+    setenv("GLOG_minloglevel", "3", /*overwrite=*/1);
+    const auto jobs = static_cast<std::size_t>(options_.jobs);
+    ForEach(jobs, options_.jobs, [this](std::size_t) {
+      for (Chunk chunk; Take(&chunk);) Finish(chunk, RunProgram(ChildCommand(chunk)));
+    });
     std::fprintf(stderr, "\n");
-    if (!failure_.empty()) Fail(failure_);
   }
 
   void Report() {
     std::sort(records_.begin(), records_.end(),
               [](const auto& a, const auto& b) { return a.run < b.run; });
-    WriteReport("stability",
-                StrCat(FLAGS_runs, " runs of at most ", FLAGS_max_iterations, " iterations on ",
-                       FLAGS_samples, " samples, 8-8 hidden units. Pairs of levels that appear: ",
-                       sweep_.walk().seen_pairs(), " of ", sweep_.walk().possible_pairs(), ".\n\n",
-                       StabilityMarkdown(sweep_.factors(), records_)));
+    output_.WriteReport(
+        "stability",
+        StrCat(options_.runs, " runs of at most ", options_.size.max_iterations, " iterations on ",
+               options_.size.samples, " samples, 8-8 hidden units. Pairs of levels that appear: ",
+               sweep_.walk().seen_pairs(), " of ", sweep_.walk().possible_pairs(), ".\n\n",
+               StabilityMarkdown(sweep_.factors(), records_)));
   }
 
  private:
-  static std::vector<std::string> ChildCommand(const Chunk& chunk) {
-    return {std::filesystem::read_symlink("/proc/self/exe"),
-            "--out_dir=" + FLAGS_out_dir,
-            StrCat("--seeds=", FLAGS_seeds),
-            StrCat("--max_iterations=", FLAGS_max_iterations),
-            StrCat("--samples=", FLAGS_samples),
-            "--sgd=" + FLAGS_sgd,
-            StrCat("--crash_at=", FLAGS_crash_at),
-            StrCat("--first_run=", chunk.first),
-            StrCat("--run_count=", chunk.count)};
+  // This program with these options, told to do the runs of a chunk.
+  std::vector<std::string> ChildCommand(const Chunk& chunk) const {
+    Options options = options_;
+    options.first_run = chunk.first;
+    options.run_count = chunk.count;
+    std::vector<std::string> command = {std::filesystem::read_symlink("/proc/self/exe")};
+    for (const std::string& line : Split(FieldsOf(&options).Lines(), '\n')) {
+      if (!line.empty()) command.push_back(line);
+    }
+    return command;
   }
 
   bool Take(Chunk* chunk) {
     const std::lock_guard lock(mutex_);
-    if (chunks_.empty() || !failure_.empty()) return false;
+    if (chunks_.empty()) return false;
     *chunk = chunks_.front();
     chunks_.pop_front();
     return true;
@@ -138,23 +152,19 @@ class Sweep {
   // The run that a process died in counts, and those behind it are done by another one.
   void Finish(const Chunk& chunk, const ProgramResult& result) {
     const std::lock_guard lock(mutex_);
-    try {
-      int done = 0;
-      for (const std::string& line : Split(result.output, '\n')) {
-        if (line.empty()) continue;
-        Add(ParseRecord(Split(line, ','), sweep_.factors().size()));
-        ++done;
-      }
-      if (done < chunk.count) {
-        AddDead(chunk.first + done, result.status);
-        ++done;
-        if (done < chunk.count) chunks_.push_back({chunk.first + done, chunk.count - done});
-      }
-      if (!csv_.flush()) Fail(csv_path_, ": can't be written");
-    } catch (const std::exception& error) {
-      failure_ = error.what();
+    int done = 0;
+    for (const std::string& line : Split(result.output, '\n')) {
+      if (line.empty()) continue;
+      Add(ParseRecord(Split(line, ','), sweep_.factors().size()));
+      ++done;
     }
-    std::fprintf(stderr, "\r%zu of %d runs, %d not ok", records_.size(), FLAGS_runs, not_ok_);
+    if (done < chunk.count) {
+      AddDead(chunk.first + done, result.status);
+      ++done;
+      if (done < chunk.count) chunks_.push_back({chunk.first + done, chunk.count - done});
+    }
+    if (!csv_.flush()) Fail(csv_path_, ": can't be written");
+    std::fprintf(stderr, "\r%zu of %d runs, %d not ok", records_.size(), options_.runs, not_ok_);
   }
 
   void AddDead(int run, int status) {
@@ -172,6 +182,8 @@ class Sweep {
     csv_ << CsvLine(RecordCells(record));
   }
 
+  const Options& options_;
+  const Output& output_;
   StabilitySweep sweep_;
   std::string csv_path_;
   std::ofstream csv_;
@@ -180,15 +192,11 @@ class Sweep {
   std::deque<Chunk> chunks_;
   std::vector<StabilityRecord> records_;
   int not_ok_ = 0;
-  std::string failure_;
 };
 
-void Run(const std::vector<std::string>&) {
-  if (FLAGS_first_run >= 0) return RunChunk();
-  if (FLAGS_runs < 1) Fail("runs = ", FLAGS_runs, "; must be >= 1");
-  if (FLAGS_jobs < 1) Fail("jobs = ", FLAGS_jobs, "; must be >= 1");
-  if (FLAGS_seeds < 1) Fail("seeds = ", FLAGS_seeds, "; must be >= 1");
-  Sweep sweep;
+void Run(const Options& options, const Arguments&, const Output& output) {
+  if (options.first_run >= 0) return RunChunk(options);
+  Sweep sweep(options, output);
   sweep.Run();
   sweep.Report();
 }
@@ -197,5 +205,5 @@ void Run(const std::vector<std::string>&) {
 }  // namespace pbnbrdf
 
 int main(int argc, char** argv) {
-  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::Run);
+  return pbnbrdf::RunExperiment(argc, argv, pbnbrdf::kUsage, pbnbrdf::FieldsOf, pbnbrdf::Run);
 }

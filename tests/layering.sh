@@ -17,8 +17,7 @@ only() {
     status=1
   fi
 }
-only 'gflags' experiments
-only 'glog' cli
+only 'gflags|glog' cli
 only 'ceres|Eigen' models residuals problem solve
 only 'nlohmann' models network render cli
 only 'hdf5|H5' sources

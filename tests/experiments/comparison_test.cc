@@ -10,7 +10,7 @@ using testing::Not;
 
 FitRecord Record(const std::string& material, int seed,
                  std::vector<std::pair<double, double>> curve, double error) {
-  FitRecord record{material, "tiny_lm", "21-21", seed, {}, curve.back().first, error};
+  FitRecord record{material, "lm", "21-21", seed, {}, curve.back().first, error};
   for (const auto& [seconds, heldout_error] : curve) {
     FitProgress progress;
     progress.seconds = seconds;
@@ -18,19 +18,6 @@ FitRecord Record(const std::string& material, int seed,
     record.trace.push_back(progress);
   }
   return record;
-}
-
-TEST(ParseMaterial, NamesTheMaterialAndItsClass) {
-  const MaterialSource sgd = ParseMaterial("metal=sgd:folder/parameters.csv#chrome-steel");
-  EXPECT_EQ(sgd.name, "chrome-steel");
-  EXPECT_EQ(sgd.material_class, "metal");
-  EXPECT_EQ(sgd.source, "sgd:folder/parameters.csv#chrome-steel");
-  EXPECT_EQ(ParseMaterial("builtin:satin-gold").name, "satin-gold");
-  EXPECT_EQ(ParseMaterial("folder/gold.paint.binary").name, "gold.paint");
-  const MaterialSource equals = ParseMaterial("folder/a=b.binary");
-  EXPECT_EQ(equals.material_class, "");
-  EXPECT_EQ(equals.source, "folder/a=b.binary");
-  EXPECT_THAT(ErrorOf([] { ParseMaterial("metal="); }), HasSubstr("names no source"));
 }
 
 TEST(Compare, MeasuresTheWholeFitIfItEndsFirst) {
@@ -58,12 +45,12 @@ TEST(ComparisonMarkdown, HasMediansOfSeedsAndTheWorstFit) {
   const PeerRecords peers = {{"gold", {8.0, 0.01, 0.01, {}, {}}},
                              {"tin", {8.0, 0.01, 0.01, {}, {}}}};
   const std::string text = ComparisonMarkdown(fits, peers);
-  EXPECT_THAT(text, HasSubstr("### tiny_lm, 21-21 hidden units"));
+  EXPECT_THAT(text, HasSubstr("### lm, 21-21 hidden units"));
   EXPECT_THAT(text, testing::ContainsRegex("gold +\\|.*\\| +4.00 \\| +0.0100 \\| +1.00 \\|"));
   EXPECT_THAT(text, testing::ContainsRegex("median.*\\| +3.00 \\| +0.00750 \\| +1.50 \\|"));
   EXPECT_THAT(text, testing::ContainsRegex("worst of.*\\| +2.00 \\| +0.0100 \\| +1.00 \\|"));
   EXPECT_THAT(text, testing::ContainsRegex(
-                        "21-21 +\\| tiny_lm \\|.*\\| +3.00 \\| +2.00 \\| +1.50 \\| +1.00 \\|"));
+                        "21-21 +\\| lm +\\|.*\\| +3.00 \\| +2.00 \\| +1.50 \\| +1.00 \\|"));
 }
 
 TEST(ComparisonMarkdown, WithoutThePeerLeavesItsColumnsOut) {
@@ -89,7 +76,7 @@ TEST(ComparisonFigure, HasAPanelForEachNetwork) {
   const Figure figure = ComparisonFigure(fits, peers);
   ASSERT_EQ(figure.panels.size(), 2u);
   ASSERT_EQ(figure.panels[1].series.size(), 2u);
-  EXPECT_EQ(figure.panels[1].series[0].label, "tiny_lm");
+  EXPECT_EQ(figure.panels[1].series[0].label, "lm");
   EXPECT_EQ(figure.panels[1].series[0].points.back().second, 0.02);
   EXPECT_EQ(figure.panels[1].series[1].label, "peer, 21-21");
 }

@@ -52,7 +52,7 @@ TEST(DrawFigure, WithoutPanelsThereIsNone) {
 
 TEST(DrawFigure, DrawsTheLabels) {
   const TemporaryFolder folder;
-  const std::string problem = DrawFigure(OneLine("tiny_lm"), folder / "f.svg");
+  const std::string problem = DrawFigure(OneLine("ceres_lm"), folder / "f.svg");
   if (RunProgram({"gnuplot", "--version"}).status != 0) {
     EXPECT_THAT(problem, HasSubstr("gnuplot is not installed"));
     GTEST_SKIP() << "needs gnuplot";
@@ -60,7 +60,7 @@ TEST(DrawFigure, DrawsTheLabels) {
   EXPECT_EQ(problem, "");
   const std::string svg = ReadFile(folder / "f.svg", 1 << 20);
   EXPECT_THAT(svg, HasSubstr("</svg>"));
-  EXPECT_THAT(svg, HasSubstr("tiny_lm"));
+  EXPECT_THAT(svg, HasSubstr("ceres_lm"));
 }
 
 }  // namespace

@@ -16,6 +16,8 @@ class Separable final : public Objective {
 
   const NetworkShape& shape() const override { return shape_; }
   std::size_t num_samples() const override { return 1; }
+  void Grow(std::size_t) override {}
+  void SetEnergy(double, std::span<const EnergyStratum>) override {}
   double Cost(const double* weights) override {
     double sum = 0.0;
     for (int i = 0; i < shape_.num_weights(); ++i) sum += cost_(weights[i]);

@@ -1,6 +1,7 @@
 #include "jacobian_methods.h"
 
 #include "pbnbrdf/models/builtin.h"
+#include "problem/initial_weights.h"
 #include "test_util.h"
 
 namespace pbnbrdf {
@@ -25,10 +26,11 @@ double HessianDifference(const Linearization& exact, const Linearization& at) {
 // More samples than the dense Jacobian holds at once, and a last batch that isn't full.
 TEST(MakeEvaluation, AllMethodsGiveTheSameNormalEquations) {
   FitProblem problem;
-  problem.hidden = {5, 4};
-  problem.energy_weight = 0.0;
-  const std::vector<BrdfSample> samples = DrawSamples(
-      *MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling, 1200, /*seed=*/1);
+  problem.network.hidden = {5, 4};
+  problem.terms.SetWeight("energy", 0.0);
+  const std::vector<BrdfSample> samples =
+      DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, problem.sampling.Angles(), 1200,
+                  /*seed=*/1);
   const std::vector<double> weights = InitialWeights(problem.Shape(), samples, /*seed=*/1);
   Linearization exact;
   MakeEvaluation(DerivativeMethod::kAutodiff, problem, samples)(weights.data(), &exact);

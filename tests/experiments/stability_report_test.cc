@@ -55,7 +55,7 @@ TEST(StabilityReport, ErrorsAreComparedWithinTheirGroup) {
   EXPECT_DOUBLE_EQ(ratios[2], 5.0);
   EXPECT_DOUBLE_EQ(ratios[3], 1.0);
   EXPECT_TRUE(std::isnan(ratios[4]));
-  EXPECT_DOUBLE_EQ(ErrorRatios(kFactors, {Record(0, "a", "ok", 1e-9)})[0], 1e-5);  // kLeastMedian
+  EXPECT_DOUBLE_EQ(ErrorRatios(kFactors, {Record(0, "a", "ok", 1e-9)})[0], 1e-5);  // kMinMedian
 }
 
 TEST(StabilityReport, CountsOutcomesOfEachLevel) {

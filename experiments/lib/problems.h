@@ -1,0 +1,13 @@
+// problems.h: the problems of the folder problems/.
+#pragma once
+
+#include <string>
+
+#include "pbnbrdf/solve/problem_file.h"
+
+namespace pbnbrdf {
+
+// problems/NAME.flags. Throws Error as ReadProblem does.
+FitSetup ShippedProblem(const std::string& name);
+
+}  // namespace pbnbrdf
