@@ -48,8 +48,9 @@ nlohmann::ordered_json ToJson(const RenderSummary& summary) {
 
 std::string WorkText(const RenderWork& work) {
   std::string text;
-  for (const WorkKind& kind : WorkKinds())
+  for (const WorkKind& kind : WorkKinds()) {
     text += WorkText(kind.name, work.*kind.work, kind.reasons);
+  }
   return text;
 }
 
