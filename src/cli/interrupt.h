@@ -1,9 +1,9 @@
-// interrupt.h: Ctrl-C stops long work after a step and keeps what there is so far.
+// interrupt.h: lets Ctrl-C end long work early, so that its result so far is kept.
 #pragma once
 
 namespace pbnbrdf::cli {
 
-// From now on the first Ctrl-C sets Interrupted(); a second one ends the program.
+// From now on the first Ctrl-C makes Interrupted() true; a second one ends the program.
 void CatchInterrupt();
 
 bool Interrupted();

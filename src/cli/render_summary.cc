@@ -3,28 +3,8 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <vector>
 
 namespace pbnbrdf::cli {
-namespace {
-
-// The reasons that a kind of work may be skipped for are shown even where they are 0.
-struct Kind {
-  const char* key;
-  Work RenderWork::*work;
-  std::vector<SkipReason> reasons;
-};
-
-std::vector<Kind> Kinds() {
-  using enum SkipReason;
-  return {{"materials", &RenderWork::materials, {kUnreferenced, kNotReached}},
-          {"samples", &RenderWork::samples, {kConverged}},
-          {"lanes", &RenderWork::lanes, {kEnded}},
-          {"rays", &RenderWork::rays, {kBelowHorizon, kUnlit, kEmptyTiles}},
-          {"brdf_values", &RenderWork::brdf_values, {kBelowHorizon, kOccluded, kUnlit}}};
-}
-
-}  // namespace
 
 nlohmann::ordered_json WorkJson(const Work& work, const std::vector<SkipReason>& reasons) {
   nlohmann::ordered_json json = {{"needed", work.needed}, {"done", work.done}};
@@ -40,7 +20,7 @@ nlohmann::ordered_json WorkJson(const Work& work, const std::vector<SkipReason>&
 std::string WorkText(const std::string& kind, const Work& work,
                      const std::vector<SkipReason>& reasons) {
   std::ostringstream text;
-  text << "  " << std::left << std::setw(12) << kind << work.done << " done";
+  text << "  " << std::left << std::setw(14) << kind << work.done << " done";
   if (work.needed != work.done) text << ", " << work.needed << " needed";
   text << "; skipped:";
   for (const SkipReason reason : reasons) {
@@ -60,15 +40,17 @@ nlohmann::ordered_json ToJson(const RenderSummary& summary) {
                                  {"dropped_samples", summary.dropped_samples},
                                  {"stopped", summary.stopped},
                                  {"seconds", summary.seconds}};
-  for (const Kind& kind : Kinds()) {
-    json[kind.key] = WorkJson(summary.work.*kind.work, kind.reasons);
+  for (const WorkKind& kind : WorkKinds()) {
+    json[kind.name] = WorkJson(summary.work.*kind.work, kind.reasons);
   }
   return json;
 }
 
 std::string WorkText(const RenderWork& work) {
   std::string text;
-  for (const Kind& kind : Kinds()) text += WorkText(kind.key, work.*kind.work, kind.reasons);
+  for (const WorkKind& kind : WorkKinds()) {
+    text += WorkText(kind.name, work.*kind.work, kind.reasons);
+  }
   return text;
 }
 

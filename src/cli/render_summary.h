@@ -1,4 +1,4 @@
-// render_summary.h: what was done for a scene and what was left out, as JSON and as text.
+// render_summary.h: the counts of a render's work (render/work.h), as JSON and as text.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,16 +9,15 @@
 
 namespace pbnbrdf::cli {
 
-// One kind of work (render/work.h): "needed", "done", "skipped" by each of the reasons, "seconds" that
-// what was done took, of all threads together, and "seconds_saved_estimate", null where nothing was
-// done to estimate it by.
+// "needed", "done", "skipped" (an object with each of the reasons), "seconds" that the work done took,
+// summed over threads, and "seconds_saved_estimate", null if none was done.
 nlohmann::ordered_json WorkJson(const Work& work, const std::vector<SkipReason>& reasons);
 
-// The same, a line.
+// The same, as a line.
 std::string WorkText(const std::string& kind, const Work& work,
                      const std::vector<SkipReason>& reasons);
 
-// "image_samples", "dropped_samples", "stopped", "seconds", and an object for each kind of work.
+// "image_samples", "dropped_samples", "stopped", "seconds", and a WorkJson for each kind of work.
 nlohmann::ordered_json ToJson(const RenderSummary& summary);
 
 // A line for each kind of work.

@@ -21,8 +21,8 @@ namespace pbnbrdf {
 namespace {
 
 constexpr const char* kChannels[] = {"R", "G", "B"};
-constexpr int kLargestSide = 1 << 16;
-constexpr std::size_t kLongestName = 255;
+constexpr int kMaxSide = 1 << 16;           // pixels, four times the width of a 16K environment map
+constexpr std::size_t kMaxNameBytes = 255;  // OpenEXR's own limit
 
 // OpenEXR's messages name the file once or more before they come to the point.
 std::string Reason(const std::exception& error) {
@@ -76,8 +76,8 @@ void CheckHeader(const std::string& path, const Imf::Header& header) {
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
   if (width < 1 || height < 1) Fail(path, ": an image of ", width, " x ", height, " pixels");
-  if (static_cast<std::size_t>(width * height) > kMostPixels) {
-    Fail(path, ": ", width, " x ", height, " pixels, at most ", kMostPixels, " are read");
+  if (static_cast<std::size_t>(width * height) > kMaxPixels) {
+    Fail(path, ": ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read");
   }
 }
 
@@ -102,8 +102,8 @@ Imf::Header MakeHeader(const Image& image, const std::map<std::string, std::stri
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const char* name : kChannels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   for (const auto& [name, value] : metadata) {
-    if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) {
-      Fail("an image's attribute is called '", name, "'; 1 to ", kLongestName,
+    if (name.empty() || name.size() > kMaxNameBytes || name.find('\0') != std::string::npos) {
+      Fail("an image's attribute is called '", name, "'; 1 to ", kMaxNameBytes,
            " bytes are allowed");
     }
     header.insert(name, Imf::StringAttribute(value));
@@ -130,8 +130,8 @@ Image ReadExr(const std::string& path) {
   const std::string magic = ReadStart(path, 4);
   if (magic.size() < 4 || !Imf::isImfMagic(magic.data())) Fail(path, ": not an OpenEXR file");
   // Of the process: OpenEXR has no other place for limits that hold before it takes memory.
-  Imf::Header::setMaxImageSize(kLargestSide, kLargestSide);
-  Imf::Header::setMaxTileSize(kLargestSide, kLargestSide);
+  Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);
+  Imf::Header::setMaxTileSize(kMaxSide, kMaxSide);
   try {
     Imf::InputFile file(path.c_str());
     return ReadPixels(path, file);

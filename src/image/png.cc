@@ -16,7 +16,8 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t(1) << 31;
+// More than twice kMaxPixels pixels of 16-bit RGB without compression.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(1) << 31;
 constexpr std::size_t kSignatureBytes = 8;
 
 // One file being read: what libpng's callbacks see. libpng reports errors by a jump back, so that
@@ -119,12 +120,12 @@ Image ReadPng(const std::string& path) {
       png_sig_cmp(reinterpret_cast<png_const_bytep>(start.data()), 0, kSignatureBytes) != 0) {
     Fail(path, ": not a PNG file");
   }
-  Reader reader(ReadFile(path, kLargestFile));
+  Reader reader(ReadFile(path, kMaxFileBytes));
   if (!ReadHeader(reader)) Fail(path, ": truncated or damaged PNG file: ", reader.message);
   const std::size_t width = png_get_image_width(reader.png, reader.info);
   const std::size_t height = png_get_image_height(reader.png, reader.info);
-  if (width * height > kMostPixels) {
-    Fail(path, ": ", width, " x ", height, " pixels, at most ", kMostPixels, " are read");
+  if (width * height > kMaxPixels) {
+    Fail(path, ": ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read");
   }
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   std::vector<png_byte> bytes(row_bytes * height);

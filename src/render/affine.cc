@@ -4,24 +4,18 @@
 
 namespace pbnbrdf {
 
-Affine Affine::Translation(const Vec3& offset) {
-  Affine map;
-  map.origin = offset;
-  return map;
-}
+Affine Affine::Translation(const Vec3& offset) { return {.origin = offset}; }
 
 Affine Affine::Scaling(const Vec3& factors) {
-  Affine map;
-  map.axes = {{{factors.x, 0.0, 0.0}, {0.0, factors.y, 0.0}, {0.0, 0.0, factors.z}}};
-  return map;
+  return {.axes = {{{factors.x, 0.0, 0.0}, {0.0, factors.y, 0.0}, {0.0, 0.0, factors.z}}}};
 }
 
 Affine Affine::Rotation(const Vec3& axis, double degrees) {
-  // Rodrigues' formula: the part along the axis stays, the rest turns.
   const Vec3 k = Normalized(axis);
   const double angle = degrees * std::numbers::pi / 180.0;
   const double c = std::cos(angle), s = std::sin(angle);
   Affine map;
+  // Rodrigues' formula.
   for (Vec3& v : map.axes) v = c * v + s * Cross(k, v) + (Dot(k, v) * (1.0 - c)) * k;
   return map;
 }
@@ -43,7 +37,7 @@ Vec3 Affine::Normal(const Vec3& n) const {
 
 Affine Compose(const Affine& after, const Affine& before) {
   Affine map;
-  for (int i = 0; i < 3; ++i) map.axes[i] = after.Vector(before.axes[i]);
+  for (std::size_t i = 0; i < 3; ++i) map.axes[i] = after.Vector(before.axes[i]);
   map.origin = after.Point(before.origin);
   return map;
 }

@@ -1,4 +1,4 @@
-// arena.h: how many threads work on an image.
+// arena.h: how many threads render.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -7,10 +7,10 @@
 
 namespace pbnbrdf {
 
-// For tbb::task_arena. threads: as an option has it; 0: as many as there are.
+// The concurrency of a tbb::task_arena. threads: an option, 0 for as many as there are.
 inline int ArenaThreads(int threads) {
-  const int most = tbb::this_task_arena::max_concurrency();
-  return threads > 0 ? std::min(threads, most) : most;
+  const int max = tbb::this_task_arena::max_concurrency();
+  return threads > 0 ? std::min(threads, max) : max;
 }
 
 }  // namespace pbnbrdf

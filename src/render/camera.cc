@@ -7,9 +7,12 @@
 namespace pbnbrdf {
 namespace {
 
-// Points nearer than this to the plane through the camera, relative to their distance, count as
-// beside it.
-constexpr double kLeastDepth = 1e-3;
+// The least depth of a point in front of the camera, relative to its distance: others are less than
+// 0.06 degrees from the plane of the camera, where projections are large and inexact.
+constexpr double kMinDepth = 1e-3;
+
+// A depth must exceed its own error by this factor, so that at least its first digit is right.
+constexpr double kMinDepthOverError = 10.0;
 
 }  // namespace
 
@@ -37,12 +40,12 @@ bool PinholeCamera::Project(const Vec3& point, Projection* projection) const {
   const Vec3 way = point - origin_;
   const double depth = Dot(way, forward_);
   const double error = kSinglePrecision * (LargestCoordinate(point) + LargestCoordinate(origin_));
-  if (!(depth > kLeastDepth * Length(way) && depth > 10.0 * error)) return false;
-  const double width2 = Dot(right_, right_);  // pixels are square: one scale for both directions
+  if (!(depth > kMinDepth * Length(way) && depth > kMinDepthOverError * error)) return false;
+  const double width2 = Dot(right_, right_);  // pixels are square, so that heights have its scale
   const double scale = 0.5 * film_.width / std::sqrt(width2);
   projection->x = 0.5 * film_.width * (1.0 + Dot(way, right_) / (depth * width2));
   projection->y = 0.5 * film_.height * (1.0 - Dot(way, up_) / (depth * Dot(up_, up_)));
-  // A change of the angle moves the place by 1 + tan^2 times that.
+  // d tan(a) / da = 1 / cos^2(a).
   const double secant = Length(way) / depth;
   projection->slack = 1.0 + 2.0 * scale * secant * secant * (error / depth + kSinglePrecision);
   return true;

@@ -1,13 +1,12 @@
-// camera.h: a scene's camera, from pixels to rays and from points to pixels.
+// camera.h: a scene's pinhole camera, from pixels to rays and from points to pixels.
 #pragma once
 
 #include "geometry.h"
-#include "pbnbrdf/render/scene.h"
 
 namespace pbnbrdf {
 
-// Where a point is seen, in pixels from the left and the top of the image, which it may be outside
-// of. Rays that meet the point pass the image within `slack` of there.
+// Where a point is seen, in pixels from the left and the top of the image, perhaps outside of it. Rays
+// that hit the point pass the image within `slack` pixels of there.
 struct Projection {
   double x, y, slack;
 };
@@ -16,11 +15,10 @@ class PinholeCamera {
  public:
   PinholeCamera(const Camera& camera, const Film& film);
 
-  // Through the place in the image, in pixels from its left and top.
+  // The ray through a place in the image, in pixels from its left and top.
   Ray RayThrough(double x, double y) const;
 
-  // Rays through the image are within so many pixels of where they should be: one, and what their
-  // directions are off by in single precision.
+  // The error of rays in pixels: one, and what single precision of their directions adds.
   double Slack() const;
 
   // False if the point is behind the camera, or so far to the side that it may be.
@@ -29,7 +27,7 @@ class PinholeCamera {
  private:
   Film film_;
   Vec3 origin_, forward_;
-  Vec3 right_, up_;  // the image's half sides at distance 1
+  Vec3 right_, up_;  // half of the image's sides at distance 1
 };
 
 }  // namespace pbnbrdf

@@ -1,16 +1,13 @@
 #include "pbnbrdf/render/demand.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "arena.h"
-#include "materials.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
 #include "tiles.h"
@@ -18,42 +15,43 @@
 namespace pbnbrdf {
 namespace {
 
-// Tiles, and samples of their pixels, whose requests are kept at a time.
-constexpr std::size_t kTilesAtOnce = 64;
-constexpr int kSamplesAtOnce = 16;
+// Tiles, and samples of each of their pixels, whose requests are in memory at a time: 64 x 4096 paths
+// with a few requests of 80 bytes each, some 100 MB.
+constexpr std::size_t kTilesPerPass = 64;
+constexpr int kSamplesPerPass = 16;
 
-Film SmallFilm(const Film& film, int most_pixels) {
+// Of the same proportions, with at most max_pixels.
+Film ShrunkFilm(const Film& film, int max_pixels) {
   const double pixels = double(film.width) * film.height;
-  const double scale = std::min(1.0, std::sqrt(most_pixels / pixels));
+  const double scale = std::min(1.0, std::sqrt(max_pixels / pixels));
   const auto side = [&](int n) { return std::max(1, static_cast<int>(n * scale)); };
   return {side(film.width), side(film.height)};
 }
 
-// What the requests for a material add up to.
-struct Sum {
+// The requests for one material, added up.
+struct RequestSum {
   double luminance = 0.0, sensitivity = 0.0;
-  std::optional<AngleHistogram> histogram;  // from the first request on
+  std::optional<AngleHistogram> histogram;  // once there is a request
 };
 
 class DemandMeter {
  public:
   DemandMeter(const Scene& scene, const RenderOptions& options, Materials* materials)
       : materials_(*materials),
-        camera_(scene.camera, scene.film),
-        geometry_(scene),
-        tracer_(scene, camera_, geometry_, options, materials),
-        tiles_(TilesOf(scene, camera_)),
+        tracer_(scene, options, materials),
+        tiles_(TilesOf(scene, tracer_.camera())),
         samples_(options.samples_per_pixel),
+        statistics_(options.skip),
         pixels_(std::size_t(scene.film.width) * std::size_t(scene.film.height)),
         sums_(scene.materials.size()) {}
 
-  // The order in which requests are added doesn't depend on the threads.
+  // Requests are added in the same order with any number of threads, as sums depend on it.
   void Run(tbb::task_arena* arena) {
-    std::vector<std::vector<Request>> requests(kTilesAtOnce);
-    for (int done = 0; done < samples_; done += kSamplesAtOnce) {
-      const int samples = std::min(kSamplesAtOnce, samples_ - done);
-      for (std::size_t begin = 0; begin < tiles_.size(); begin += kTilesAtOnce) {
-        const std::size_t count = std::min(kTilesAtOnce, tiles_.size() - begin);
+    std::vector<std::vector<Request>> requests(kTilesPerPass);
+    for (int done = 0; done < samples_; done += kSamplesPerPass) {
+      const int samples = std::min(kSamplesPerPass, samples_ - done);
+      for (std::size_t begin = 0; begin < tiles_.size(); begin += kTilesPerPass) {
+        const std::size_t count = std::min(kTilesPerPass, tiles_.size() - begin);
         arena->execute([&] {
           tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             Trace(tiles_[begin + i], done, samples, &requests[i]);
@@ -65,34 +63,35 @@ class DemandMeter {
     }
   }
 
-  // Of each material, those that no path reached excepted.
-  void Finish(std::vector<MaterialDemand>* demand) const {
+  // The demand for a material, by its number.
+  MaterialDemand Demand(std::size_t i) const {
+    const RequestSum& sum = sums_[i];
+    MaterialDemand demand;
+    demand.reached = materials_.IsReached(i);
     double image = 0.0;
     for (const PixelSum& pixel : pixels_) image += pixel.luminance;
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      MaterialDemand& material = (*demand)[i];
-      material.reached = materials_.IsReached(i);
-      if (image > 0.0) {
-        material.share = sums_[i].luminance / image;
-        material.sensitivity = sums_[i].sensitivity / image;
-      }
-      if (!sums_[i].histogram || !(sums_[i].histogram->Total() > 0.0)) continue;
-      material.angles = std::make_shared<const AngleDistribution>(*sums_[i].histogram);
+    if (image > 0.0) {
+      demand.share = sum.luminance / image;
+      demand.sensitivity = sum.sensitivity / image;
     }
+    if (sum.histogram && sum.histogram->Total() > 0.0) {
+      demand.angles = std::make_shared<const AngleDistribution>(*sum.histogram);
+    }
+    return demand;
   }
 
  private:
   void Trace(const Tile& tile, int first, int count, std::vector<Request>* requests) {
     requests->clear();
     RequestLog log(requests);
-    TileCounts counts;
-    tracer_.Trace({std::span(&tile.block, 1), first, count, tile.empty}, pixels_, &counts, &log);
+    tracer_.Trace({std::span(&tile.block, 1), first, count, tile.empty}, pixels_, &statistics_,
+                  &log);
   }
 
   void Add(const std::vector<Request>& requests) {
     for (const Request& request : requests) {
       const auto material = static_cast<std::size_t>(request.material);
-      Sum& sum = sums_[material];
+      RequestSum& sum = sums_[material];
       if (!sum.histogram) sum.histogram.emplace(materials_.Reach(material)->brdf->IsIsotropic());
       sum.luminance += request.luminance;
       sum.sensitivity += request.sensitivity;
@@ -101,13 +100,12 @@ class DemandMeter {
   }
 
   Materials& materials_;
-  const PinholeCamera camera_;
-  const Geometry geometry_;
   const PathTracer tracer_;
   const std::vector<Tile> tiles_;
   const int samples_;
+  Statistics statistics_;
   std::vector<PixelSum> pixels_;
-  std::vector<Sum> sums_;
+  std::vector<RequestSum> sums_;
 };
 
 }  // namespace
@@ -115,11 +113,11 @@ class DemandMeter {
 std::vector<MaterialDemand> MeasureDemand(const Scene& scene, const MaterialOpener& open,
                                           const DemandOptions& options) {
   for (const auto& [name, value] :
-       {std::pair("paths", options.paths), std::pair("most_pixels", options.most_pixels)}) {
+       {std::pair("paths", options.paths), std::pair("max_pixels", options.max_pixels)}) {
     if (value < 1) Fail("DemandOptions::", name, " = ", value, "; must be >= 1");
   }
   Scene small = scene;
-  small.film = SmallFilm(scene.film, options.most_pixels);
+  small.film = ShrunkFilm(scene.film, options.max_pixels);
   const RenderOptions render = {
       .samples_per_pixel = std::max(1, options.paths / (small.film.width * small.film.height)),
       .seed = options.seed,
@@ -130,9 +128,9 @@ std::vector<MaterialDemand> MeasureDemand(const Scene& scene, const MaterialOpen
   tbb::task_arena arena(ArenaThreads(options.threads));
   DemandMeter meter(small, render, &materials);
   meter.Run(&arena);
-  std::vector<MaterialDemand> demand(scene.materials.size());
+  std::vector<MaterialDemand> demand;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) demand.push_back(meter.Demand(i));
   for (const Shape& shape : scene.shapes) demand[std::size_t(shape.material)].referenced = true;
-  meter.Finish(&demand);
   return demand;
 }
 

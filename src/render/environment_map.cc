@@ -6,18 +6,18 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/luminance.h"
+#include "sky.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// The interval of running sums that u falls in, and where, in [0, 1): intervals of no length are
-// never chosen, nor is what rounding leaves beyond the last.
-int Choose(const double* sums, int count, double u, double* within) {
+// Chooses an interval between running sums in proportion to its length, and sets *within, in [0, 1),
+// to the place in it. An empty interval is never chosen, whatever the rounding.
+int SampleInterval(const double* sums, int count, double u, double* within) {
   const double at = u * sums[count - 1];
-  const auto i = static_cast<int>(std::upper_bound(sums, sums + count, at) - sums);
-  int chosen = std::min(i, count - 1);
+  int chosen = static_cast<int>(std::upper_bound(sums, sums + count - 1, at) - sums);
   while (chosen > 0 && sums[chosen] == sums[chosen - 1]) --chosen;
   const double before = chosen > 0 ? sums[chosen - 1] : 0.0;
   *within = std::clamp((at - before) / (sums[chosen] - before), 0.0, 1.0 - 0x1p-53);
@@ -52,9 +52,7 @@ EnvironmentMap::EnvironmentMap(Image radiance, double rotation, double scale)
 }
 
 EnvironmentMap EnvironmentMap::Constant(const Rgb& radiance) {
-  Image texel(1, 1);
-  for (int c = 0; c < 3; ++c) texel.rgb[c] = static_cast<float>(radiance[c]);
-  return EnvironmentMap(std::move(texel), 0.0, 1.0);
+  return EnvironmentMap(ConstantImage(radiance), 0.0, 1.0);
 }
 
 EnvironmentMap::Texel EnvironmentMap::TexelAt(const Vec3& direction) const {
@@ -62,7 +60,7 @@ EnvironmentMap::Texel EnvironmentMap::TexelAt(const Vec3& direction) const {
   const double u = phi / (2.0 * kPi);
   const int width = radiance_.width, height = radiance_.height;
   const int x = std::min(static_cast<int>((u - std::floor(u)) * width), width - 1);
-  // theta only up to rounding: the edges that the density knows decide.
+  // acos rounds; the rows' edges decide, as they do in Sample.
   const double c = std::clamp(direction.y, -1.0, 1.0);
   int y = std::min(static_cast<int>(std::acos(c) / kPi * height), height - 1);
   while (y > 0 && c > cos_theta_[y]) --y;
@@ -77,22 +75,23 @@ Rgb EnvironmentMap::RadianceOf(const Texel& texel) const {
   return {rgb[0], rgb[1], rgb[2]};
 }
 
-double EnvironmentMap::Density(const Texel& texel) const {
-  // The probability of the texel over its solid angle; the latter's height cancels.
+double EnvironmentMap::PdfOf(const Texel& texel) const {
+  // The texel's probability over its solid angle, in which the height in cos theta cancels.
   const double d_phi = 2.0 * kPi / radiance_.width;
   return Luminance(RadianceOf(texel)) / (total_ * d_phi);
 }
 
 double EnvironmentMap::Pdf(const Vec3& direction) const {
-  return IsBlack() ? 0.0 : Density(TexelAt(direction));
+  return IsBlack() ? 0.0 : PdfOf(TexelAt(direction));
 }
 
 Vec3 EnvironmentMap::Sample(const std::array<double, 2>& u, double* pdf, Rgb* radiance) const {
   const int width = radiance_.width;
   double across, down;
-  const int y = Choose(rows_.data(), radiance_.height, u[1], &down);
-  const int x = Choose(&columns_[std::size_t(y) * std::size_t(width)], width, u[0], &across);
-  *pdf = Density({x, y});
+  const int y = SampleInterval(rows_.data(), radiance_.height, u[1], &down);
+  const int x =
+      SampleInterval(&columns_[std::size_t(y) * std::size_t(width)], width, u[0], &across);
+  *pdf = PdfOf({x, y});
   *radiance = RadianceOf({x, y});
   const double cos_theta = cos_theta_[y] + down * (cos_theta_[y + 1] - cos_theta_[y]);
   const double sin_theta = std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));

@@ -18,11 +18,14 @@ struct Sphere {
 struct Mesh {
   TriangleMesh mesh;
   Vec3 tangent;
-  int material, light;
+  int material, light;  // one of them is -1
 };
 
-// Solves |o + t d| = 1. By way of the point nearest to the center, and without differences of
-// nearly equal numbers: spheres may be small and far away.
+// A shorter sum of interpolated normals is mostly rounding: the surface's own normal is taken.
+constexpr double kMinNormal = 1e-6;
+
+// Solves |o + t d| = 1 without differences of nearly equal numbers, as spheres may be small and far
+// away: the discriminant comes from the point of the ray that is nearest to the center.
 bool SolveUnitSphere(const Vec3& o, const Vec3& d, double* near, double* far) {
   const double a = Dot(d, d), b = -Dot(o, d), c = Dot(o, o) - 1.0;
   const Vec3 nearest = o + (b / a) * d;
@@ -36,56 +39,58 @@ bool SolveUnitSphere(const Vec3& o, const Vec3& d, double* near, double* far) {
 }
 
 RTCBounds SphereBounds(const Sphere& sphere) {
-  // The reach of an ellipsoid along an axis is the length of that row of its matrix.
+  // An ellipsoid reaches as far along an axis as that row of its matrix is long.
   const auto& [u, v, w] = sphere.to_world.axes;
   const Vec3 reach = {std::hypot(u.x, v.x, w.x), std::hypot(u.y, v.y, w.y),
                       std::hypot(u.z, v.z, w.z)};
   const Vec3& o = sphere.to_world.origin;
-  const double slack = kSinglePrecision * (LargestCoordinate(o) + LargestCoordinate(reach));
+  const double error = kSinglePrecision * (LargestCoordinate(o) + LargestCoordinate(reach));
   RTCBounds bounds = {};
-  bounds.lower_x = static_cast<float>(o.x - reach.x - slack);
-  bounds.lower_y = static_cast<float>(o.y - reach.y - slack);
-  bounds.lower_z = static_cast<float>(o.z - reach.z - slack);
-  bounds.upper_x = static_cast<float>(o.x + reach.x + slack);
-  bounds.upper_y = static_cast<float>(o.y + reach.y + slack);
-  bounds.upper_z = static_cast<float>(o.z + reach.z + slack);
+  bounds.lower_x = static_cast<float>(o.x - reach.x - error);
+  bounds.lower_y = static_cast<float>(o.y - reach.y - error);
+  bounds.lower_z = static_cast<float>(o.z - reach.z - error);
+  bounds.upper_x = static_cast<float>(o.x + reach.x + error);
+  bounds.upper_y = static_cast<float>(o.y + reach.y + error);
+  bounds.upper_z = static_cast<float>(o.z + reach.z + error);
   return bounds;
 }
 
-// The nearest distance in (ray.tnear, ray.tfar) at which the ray meets the sphere, or 0.
-float MeetSphere(const Sphere& sphere, RTCRayN* ray) {
-  const Vec3 o = {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)};
-  const Vec3 d = {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)};
+// The nearest hit in (tnear, tfar) of the ray with a sphere, as a distance; 0: none.
+float HitDistance(const Sphere& sphere, const RTCRay& ray) {
+  const Vec3 o = {ray.org_x, ray.org_y, ray.org_z}, d = {ray.dir_x, ray.dir_y, ray.dir_z};
   double near, far;
   if (!SolveUnitSphere(sphere.to_unit.Point(o), sphere.to_unit.Vector(d), &near, &far)) return 0;
   for (const double t : {near, far}) {
-    if (t > RTCRayN_tnear(ray, 1, 0) && t < RTCRayN_tfar(ray, 1, 0)) return static_cast<float>(t);
+    if (t > ray.tnear && t < ray.tfar) return static_cast<float>(t);
   }
   return 0;
 }
 
-void BoundsOfSphere(const RTCBoundsFunctionArguments* args) {
-  const auto* spheres = static_cast<const Sphere*>(args->geometryUserPtr);
-  *args->bounds_o = SphereBounds(spheres[args->primID]);
+// Embree's callbacks for spheres. As rays come one at a time, an RTCRayN is an RTCRay.
+template <typename Arguments>
+const Sphere& SphereOf(const Arguments* args) {
+  return static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
+}
+
+void BoundSphere(const RTCBoundsFunctionArguments* args) {
+  *args->bounds_o = SphereBounds(SphereOf(args));
 }
 
 void IntersectSphere(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
-  RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, 1);
-  const float t = MeetSphere(static_cast<const Sphere*>(args->geometryUserPtr)[args->primID], ray);
+  auto& [ray, hit] = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+  const float t = HitDistance(SphereOf(args), ray);
   if (!(t > 0.0f)) return;
-  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, 1);
-  RTCRayN_tfar(ray, 1, 0) = t;
-  RTCHitN_primID(hit, 1, 0) = args->primID;
-  RTCHitN_geomID(hit, 1, 0) = args->geomID;
-  RTCHitN_instID(hit, 1, 0, 0) = args->context->instID[0];
+  ray.tfar = t;
+  hit.primID = args->primID;
+  hit.geomID = args->geomID;
+  hit.instID[0] = args->context->instID[0];
 }
 
 void OccludeSphere(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
-  if (MeetSphere(static_cast<const Sphere*>(args->geometryUserPtr)[args->primID], args->ray) > 0) {
-    RTCRayN_tfar(args->ray, 1, 0) = -std::numeric_limits<float>::infinity();
-  }
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  if (HitDistance(SphereOf(args), ray) > 0.0f) ray.tfar = -std::numeric_limits<float>::infinity();
 }
 
 RTCRay MakeRay(const Ray& ray, double distance) {
@@ -101,19 +106,11 @@ RTCRay MakeRay(const Ray& ray, double distance) {
   return r;
 }
 
-TriangleMesh MeshOf(const RectangleLight& light) {
-  const Vec3 c = light.center, x = light.x_axis, y = light.y_axis;
-  TriangleMesh mesh;
-  mesh.positions = {c - x - y, c + x - y, c + x + y, c - x + y};
-  mesh.triangles = {{{0, 1, 2}, {0, 2, 3}}};
-  return mesh;
-}
-
 }  // namespace
 
 struct Geometry::Embree {
   Embree() : device(rtcNewDevice(nullptr)) {
-    if (device == nullptr) Fail("Embree can't be used: error ", rtcGetDeviceError(nullptr));
+    if (device == nullptr) Fail("Embree doesn't start: error ", rtcGetDeviceError(nullptr));
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   }
@@ -150,7 +147,7 @@ struct Geometry::Embree {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(spheres.size()));
     rtcSetGeometryUserData(geometry, spheres.data());
-    rtcSetGeometryBoundsFunction(geometry, BoundsOfSphere, nullptr);
+    rtcSetGeometryBoundsFunction(geometry, BoundSphere, nullptr);
     rtcSetGeometryIntersectFunction(geometry, IntersectSphere);
     rtcSetGeometryOccludedFunction(geometry, OccludeSphere);
     Attach(geometry, id);
@@ -159,7 +156,7 @@ struct Geometry::Embree {
   void Build() {
     for (std::size_t i = 0; i < meshes.size(); ++i) AttachMesh(meshes[i].mesh, unsigned(i));
     if (!spheres.empty()) AttachSpheres(static_cast<unsigned>(meshes.size()));
-    // By one thread: where two things are equally near, the order that they are built in decides.
+    // One thread, as the order of building decides which of two equally near shapes a ray hits.
     tbb::task_arena(1).execute([&] { rtcCommitScene(scene); });
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE) Fail("Embree can't build the scene: error ", int(error));
@@ -171,9 +168,7 @@ struct Geometry::Embree {
     hit->position = sphere.to_world.Point(n);
     hit->normal = hit->shading_normal = Normalized(sphere.to_world.Normal(n));
     hit->tangent = sphere.to_world.Vector({n.z, 0.0, -n.x});
-    double extent = LargestCoordinate(sphere.to_world.origin);
-    for (const Vec3& axis : sphere.to_world.axes) extent += LargestCoordinate(axis);
-    hit->margin = kSinglePrecision * extent;
+    hit->margin = kSinglePrecision * LargestCoordinate(sphere.to_world);
   }
 
   void HitMesh(const Mesh& shape, unsigned triangle, double u, double v, Hit* hit) const {
@@ -191,7 +186,7 @@ struct Geometry::Embree {
     const auto& normals = shape.mesh.normals;
     const Vec3 sum = (1.0 - u - v) * Normalized(normals[i]) + u * Normalized(normals[j]) +
                      v * Normalized(normals[k]);
-    if (Length(sum) > 1e-6) hit->shading_normal = Normalized(sum);
+    if (Length(sum) > kMinNormal) hit->shading_normal = Normalized(sum);
   }
 
   RTCDevice device;
@@ -210,7 +205,8 @@ Geometry::Geometry(const Scene& scene) : embree_(std::make_unique<Embree>()) {
     }
   }
   for (std::size_t i = 0; i < scene.rectangle_lights.size(); ++i) {
-    embree_->meshes.push_back({MeshOf(scene.rectangle_lights[i]), {}, -1, static_cast<int>(i)});
+    const auto& [center, x, y, radiance] = scene.rectangle_lights[i];
+    embree_->meshes.push_back({ParallelogramMesh(center, x, y), {}, -1, static_cast<int>(i)});
   }
   embree_->Build();
 }

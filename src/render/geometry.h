@@ -1,31 +1,29 @@
 // geometry.h: what rays hit, by Embree 3 (https://www.embree.org).
 //
-// Embree computes in single precision. Where a ray hits is computed again here, from what is hit,
-// so that the point lies on it; spheres are intersected in double precision altogether.
+// Embree computes in single precision. Where a ray hits is therefore computed again here, from the
+// shape that it hits, so that the point lies on the shape. Spheres are intersected in double
+// precision.
 #pragma once
 
 #include <memory>
 
 #include "pbnbrdf/render/scene.h"
+#include "single_precision.h"
 
 namespace pbnbrdf {
-
-// What Embree is off by, relative to the coordinates, and directions in radians: a few roundings of
-// float.
-inline constexpr double kSinglePrecision = 1e-6;
 
 struct Ray {
   Vec3 origin, direction;  // of unit length
 };
 
 struct Hit {
-  int light = -1;     // the rectangle light's number, or -1, and then:
-  int material = -1;  // the shape's
+  int light = -1;     // number of the rectangle light, or -1
+  int material = -1;  // of the shape; -1 on a light
   Vec3 position;
   Vec3 normal;          // of the surface, of unit length
-  Vec3 shading_normal;  // interpolated where the mesh has normals
-  Vec3 tangent;         // any length, in the surface or not
-  double margin;        // rays that start here need this distance from the surface
+  Vec3 shading_normal;  // interpolated where the mesh has normals, of unit length
+  Vec3 tangent;         // not of unit length, perhaps not in the surface
+  double margin = 0.0;  // rays that leave the surface start at this distance from it
 };
 
 class Geometry {
@@ -36,10 +34,10 @@ class Geometry {
   Geometry(const Geometry&) = delete;
   Geometry& operator=(const Geometry&) = delete;
 
-  // The first thing that the ray meets; false if there is none.
+  // The first hit of the ray; false if it hits nothing.
   bool Intersect(const Ray& ray, Hit* hit) const;
 
-  // Whether something is nearer than `distance`, which may be infinite.
+  // Whether the ray hits something nearer than `distance`, which may be infinite.
   bool Occluded(const Ray& ray, double distance) const;
 
  private:

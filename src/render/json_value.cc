@@ -12,25 +12,27 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kDeepest = 64;
-constexpr std::size_t kLongestQuote = 60;
+constexpr int kMaxDepth = 64;          // scenes need 6; the parser's stack holds thousands
+constexpr std::size_t kMaxQuote = 60;  // characters of a value in a message of one line
+// Leaves room below the largest float, 3e38, for scales and for sums over lights.
+constexpr double kMaxColor = 1e30;
 
 std::string Quoted(const ordered_json& json) {
   const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  return text.size() > kLongestQuote ? text.substr(0, kLongestQuote) + "..." : text;
+  return text.size() > kMaxQuote ? text.substr(0, kMaxQuote) + "..." : text;
 }
 
 }  // namespace
 
 ordered_json ParseJson(const std::string& text) {
   using Event = ordered_json::parse_event_t;
-  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  std::vector<std::set<std::string>> keys;  // of the objects around the current place
   const auto watch = [&](int depth, Event event, ordered_json& parsed) {
-    if (depth > kDeepest) Fail("not a scene: nested more than ", kDeepest, " deep");
+    if (depth > kMaxDepth) Fail("not a scene: nested more than ", kMaxDepth, " deep");
     if (event == Event::object_start) keys.emplace_back();
     if (event == Event::object_end) keys.pop_back();
     if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second) {
-      Fail("key ", Quoted(parsed), " is there twice");
+      Fail("key ", Quoted(parsed), " is given twice");
     }
     return true;
   };
@@ -69,10 +71,10 @@ double JsonValue::NotNegative() const {
   return value;
 }
 
-int JsonValue::Whole(int least, int most) const {
+int JsonValue::Whole(int min, int max) const {
   const double value = Number();
-  if (!(value >= least && value <= most && value == std::floor(value))) {
-    Refuse("is ", value, "; must be a whole number from ", least, " to ", most);
+  if (!(value >= min && value <= max && value == std::floor(value))) {
+    Refuse("is ", value, "; must be a whole number from ", min, " to ", max);
   }
   return static_cast<int>(value);
 }
@@ -101,7 +103,7 @@ Rgb JsonValue::Color() const {
   }
   for (double channel : color) {
     if (!(channel >= 0.0)) Refuse("has a channel of ", channel, "; must be >= 0");
-    if (channel > 1e30) Refuse("has a channel of ", channel, "; must be at most 1e30");
+    if (channel > kMaxColor) Refuse("has a channel of ", channel, "; must be <= ", kMaxColor);
   }
   return color;
 }

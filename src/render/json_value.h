@@ -1,4 +1,4 @@
-// json_value.h: values of a JSON file, together with where they stand, so that errors can say it.
+// json_value.h: a value of a JSON file that knows its place there, for error messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,8 +10,13 @@
 
 namespace pbnbrdf {
 
-// The text parsed. Throws Error if it isn't JSON or a key is there twice in an object.
+// Throws Error if the text is not JSON, or an object has a key twice.
 nlohmann::ordered_json ParseJson(const std::string& text);
+
+// Its message begins with a place in the file.
+struct PlacedError : Error {
+  using Error::Error;
+};
 
 class JsonValue {
  public:
@@ -19,30 +24,43 @@ class JsonValue {
   JsonValue(const nlohmann::ordered_json& json, std::string place)
       : json_(&json), place_(std::move(place)) {}
 
-  // Throws Error "place: message".
+  // Throws PlacedError "place: message".
   template <typename... Parts>
   [[noreturn]] void Refuse(const Parts&... parts) const {
-    Fail(place_.empty() ? "" : place_ + ": ", parts...);
+    throw PlacedError(StrCat(place_.empty() ? "" : place_ + ": ", parts...));
   }
 
-  // All throw Error, with the place, if the value is another.
+  // Calls the function, and refuses the value with the message of any other Error.
+  template <typename Function>
+  auto Check(Function function) const {
+    try {
+      return function();
+    } catch (const PlacedError&) {
+      throw;
+    } catch (const Error& error) {
+      Refuse(error.what());
+    }
+  }
+
+  // Each refuses a value of another type or out of its range.
   std::string Text() const;
   double Number() const;
   double Positive() const;
   double NotNegative() const;
-  int Whole(int least, int most) const;
+  int Whole(int min, int max) const;
   Vec3 Vector() const;     // three numbers
-  Vec3 Direction() const;  // of any length but 0
+  Vec3 Direction() const;  // three numbers, not all 0, normalized
   Rgb Color() const;       // a number >= 0, or three
 
   // Of an object.
-  void CheckKeys(const std::vector<std::string>& known) const;  // that it has no others
+  void CheckKeys(const std::vector<std::string>& known) const;  // refuses all others
   bool Has(const std::string& key) const { return json_->contains(key); }
-  JsonValue At(const std::string& key) const;  // which it must have
+  JsonValue At(const std::string& key) const;  // refuses an object without the key
   std::vector<std::pair<std::string, JsonValue>> Members() const;
 
-  std::vector<JsonValue> Elements() const;  // of an array
+  // Of an array.
   bool IsArray() const { return json_->is_array(); }
+  std::vector<JsonValue> Elements() const;
 
  private:
   double Finite(const nlohmann::ordered_json& json) const;

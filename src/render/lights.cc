@@ -2,34 +2,34 @@
 
 #include <limits>
 
+#include "rgb.h"
+
 namespace pbnbrdf {
 namespace {
 
-// Shadow rays end this much before a rectangle light, which is there to be hit.
-constexpr double kShorter = 1.0 - 1e-4;
+// Shadow rays end this part of the way to a rectangle light: they must not hit the light itself. As
+// pbrt's shadow rays do.
+constexpr double kShadowRayPart = 1.0 - 1e-4;
 
-Rgb Scaled(const Rgb& color, double factor) {
-  return {color[0] * factor, color[1] * factor, color[2] * factor};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The area of the light times the cosine between its normal and the way back along `direction`.
+double ProjectedArea(const RectangleLight& light, const Vec3& direction) {
+  return -4.0 * Dot(Cross(light.x_axis, light.y_axis), direction);
 }
-
-// x axis times y axis: of the length of a quarter of the area.
-Vec3 AreaNormal(const RectangleLight& light) { return Cross(light.x_axis, light.y_axis); }
 
 }  // namespace
 
 Lights::Lights(const Scene& scene, Estimator estimator) : scene_(scene) {
+  const auto add = [&](Kind kind, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) choices_.push_back({kind, i});
+  };
   if (estimator != Estimator::kBrdf) {
-    if (scene.environment && !scene.environment->IsBlack()) {
-      choices_.push_back({Kind::kEnvironment, 0});
-    }
-    for (std::size_t i = 0; i < scene.rectangle_lights.size(); ++i) {
-      choices_.push_back({Kind::kRectangle, i});
-    }
+    add(Kind::kEnvironment, scene.environment && !scene.environment->IsBlack() ? 1 : 0);
+    add(Kind::kRectangle, scene.rectangle_lights.size());
   }
-  for (std::size_t i = 0; i < scene.point_lights.size(); ++i) choices_.push_back({Kind::kPoint, i});
-  for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) {
-    choices_.push_back({Kind::kDirectional, i});
-  }
+  add(Kind::kPoint, scene.point_lights.size());
+  add(Kind::kDirectional, scene.directional_lights.size());
 }
 
 bool Lights::Sample(const Vec3& position, Random* random, LightSample* sample) const {
@@ -40,10 +40,9 @@ bool Lights::Sample(const Vec3& position, Random* random, LightSample* sample) c
     case Kind::kEnvironment: {
       double pdf;
       Rgb radiance;
-      sample->direction = scene_.environment->Sample(random->Pair(), &pdf, &radiance);
-      sample->distance = std::numeric_limits<double>::infinity();
-      sample->pdf = pdf / count;
-      sample->weight = Scaled(radiance, 1.0 / sample->pdf);
+      const Vec3 direction = scene_.environment->Sample(random->Pair(), &pdf, &radiance);
+      pdf /= count;
+      *sample = {direction, kInfinity, (1.0 / pdf) * radiance, pdf};
       return true;
     }
     case Kind::kRectangle:
@@ -51,20 +50,14 @@ bool Lights::Sample(const Vec3& position, Random* random, LightSample* sample) c
     case Kind::kPoint: {
       const PointLight& light = scene_.point_lights[choice.number];
       const Vec3 to_light = light.position - position;
-      const double squared = Dot(to_light, to_light);
-      if (!(squared > 0.0)) return false;
-      sample->distance = std::sqrt(squared);
-      sample->direction = (1.0 / sample->distance) * to_light;
-      sample->pdf = 0.0;
-      sample->weight = Scaled(light.intensity, count / squared);
+      const double squared = Dot(to_light, to_light), distance = std::sqrt(squared);
+      if (!(distance > 0.0)) return false;
+      *sample = {(1.0 / distance) * to_light, distance, (count / squared) * light.intensity, 0.0};
       return true;
     }
     case Kind::kDirectional: {
       const DirectionalLight& light = scene_.directional_lights[choice.number];
-      sample->direction = -1.0 * light.direction;
-      sample->distance = std::numeric_limits<double>::infinity();
-      sample->pdf = 0.0;
-      sample->weight = Scaled(light.irradiance, count);
+      *sample = {-1.0 * light.direction, kInfinity, count * light.irradiance, 0.0};
       return true;
     }
   }
@@ -78,39 +71,33 @@ bool Lights::SampleRectangle(const RectangleLight& light, const Vec3& position, 
   const Vec3 to_light = point - position;
   const double squared = Dot(to_light, to_light), distance = std::sqrt(squared);
   if (!(distance > 0.0)) return false;
-  sample->direction = (1.0 / distance) * to_light;
-  sample->distance = kShorter * distance;
-  const double facing = -4.0 * Dot(AreaNormal(light), sample->direction);  // area times cosine
-  if (!(facing > 0.0)) {
-    sample->pdf = 0.0;
-    sample->weight = {};
-    return true;
+  *sample = {(1.0 / distance) * to_light, kShadowRayPart * distance, {}, 0.0};
+  const double area = ProjectedArea(light, sample->direction);
+  if (area > 0.0) {
+    sample->pdf = squared / (area * static_cast<double>(choices_.size()));
+    sample->weight = (1.0 / sample->pdf) * light.radiance;
   }
-  sample->pdf = squared / (facing * static_cast<double>(choices_.size()));
-  sample->weight = Scaled(light.radiance, 1.0 / sample->pdf);
   return true;
 }
 
-Rgb Lights::EnvironmentRadiance(const Vec3& direction) const {
-  return scene_.environment ? scene_.environment->Radiance(direction) : Rgb{};
+Rgb Lights::Radiance(const Ray& ray, const Hit* hit) const {
+  if (hit == nullptr) {
+    return scene_.environment ? scene_.environment->Radiance(ray.direction) : Rgb{};
+  }
+  const RectangleLight& light = scene_.rectangle_lights[static_cast<std::size_t>(hit->light)];
+  return ProjectedArea(light, ray.direction) > 0.0 ? light.radiance : Rgb{};
 }
 
-double Lights::EnvironmentPdf(const Vec3& direction) const {
-  if (!scene_.environment || choices_.empty()) return 0.0;
-  return scene_.environment->Pdf(direction) / static_cast<double>(choices_.size());
-}
-
-Rgb Lights::RectangleRadiance(int light, const Vec3& direction) const {
-  const RectangleLight& rectangle = scene_.rectangle_lights[light];
-  return Dot(AreaNormal(rectangle), direction) < 0.0 ? rectangle.radiance : Rgb{};
-}
-
-double Lights::RectanglePdf(int light, const Vec3& origin, const Vec3& direction,
-                            const Vec3& position) const {
-  const Vec3 way = position - origin;
-  const double facing = -4.0 * Dot(AreaNormal(scene_.rectangle_lights[light]), direction);
-  if (!(facing > 0.0) || choices_.empty()) return 0.0;
-  return Dot(way, way) / (facing * static_cast<double>(choices_.size()));
+double Lights::Pdf(const Ray& ray, const Hit* hit) const {
+  const auto count = static_cast<double>(choices_.size());
+  if (choices_.empty()) return 0.0;
+  if (hit == nullptr) {
+    return scene_.environment ? scene_.environment->Pdf(ray.direction) / count : 0.0;
+  }
+  const Vec3 way = hit->position - ray.origin;
+  const double area =
+      ProjectedArea(scene_.rectangle_lights[static_cast<std::size_t>(hit->light)], ray.direction);
+  return area > 0.0 ? Dot(way, way) / (area * count) : 0.0;
 }
 
 }  // namespace pbnbrdf

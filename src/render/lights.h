@@ -1,6 +1,7 @@
-// lights.h: the lights of a scene, as a path meets or samples them.
+// lights.h: the lights of a scene, as paths sample them and as rays hit them.
 #pragma once
 
+#include "geometry.h"
 #include "pbnbrdf/render/render.h"
 #include "random.h"
 
@@ -8,9 +9,9 @@ namespace pbnbrdf {
 
 struct LightSample {
   Vec3 direction;   // to the light, of unit length
-  double distance;  // nothing nearer may be in between; may be infinite
-  Rgb weight;       // radiance over the density, or what a point or directional light has for it
-  double pdf;       // per solid angle, with the choice of the light; 0: no other way finds it
+  double distance;  // the light is seen if nothing is nearer; may be infinite
+  Rgb weight;       // radiance / pdf; of a point or directional light, irradiance / probability
+  double pdf;       // per solid angle, times the probability of the light; 0: no ray can hit it
 };
 
 class Lights {
@@ -18,18 +19,14 @@ class Lights {
   // The scene must outlive this.
   Lights(const Scene& scene, Estimator estimator);
 
-  // A light at random and a direction to it, of weight 0 if nothing comes from there; false if there
-  // is no light, or it is at the very position.
+  // Chooses a light at random and a direction to it. The weight is 0 if no light comes from there.
+  // False if there is no light, or if it is at the position itself.
   bool Sample(const Vec3& position, Random* random, LightSample* sample) const;
 
-  // What comes from a direction in which nothing is, and the density that Sample has for it.
-  Rgb EnvironmentRadiance(const Vec3& direction) const;
-  double EnvironmentPdf(const Vec3& direction) const;
-
-  // What a ray from `origin` finds where it hits the rectangle, and the density as above.
-  Rgb RectangleRadiance(int light, const Vec3& direction) const;
-  double RectanglePdf(int light, const Vec3& origin, const Vec3& direction,
-                      const Vec3& position) const;
+  // Of a ray that hits a rectangle light, or the environment if `hit` is null: the radiance that it
+  // finds, and the density with which Sample would have chosen its direction.
+  Rgb Radiance(const Ray& ray, const Hit* hit) const;
+  double Pdf(const Ray& ray, const Hit* hit) const;
 
  private:
   enum class Kind { kEnvironment, kRectangle, kPoint, kDirectional };
@@ -44,5 +41,12 @@ class Lights {
   const Scene& scene_;
   std::vector<Choice> choices_;
 };
+
+// Weight of a sample in multiple importance sampling: the power heuristic with exponent 2. pdf: of
+// the technique that drew it; other: of the other technique for the same direction.
+inline double PowerHeuristic(double pdf, double other) {
+  const double ratio = other / pdf;
+  return 1.0 / (1.0 + ratio * ratio);
+}
 
 }  // namespace pbnbrdf

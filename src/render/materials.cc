@@ -52,8 +52,8 @@ void Materials::Open(std::size_t material) {
   if (slot.opened.load(std::memory_order_relaxed)) return;
   const ScopedTimer timer(&slot.seconds);
   try {
-    // Isolated: a thread that waits for the opener's own tasks must not take up another tile, as
-    // that may want the mutex.
+    // Isolated: while this thread waits for the opener's own tasks, it must not start another tile,
+    // which may wait for the mutex.
     tbb::this_task_arena::isolate(
         [&] { slot.material = Prepare(scene_.materials[material], open_); });
   } catch (...) {

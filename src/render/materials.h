@@ -1,4 +1,4 @@
-// materials.h: a scene's materials, opened when the first path gets there.
+// materials.h: a scene's materials, each opened when the first path hits it.
 #pragma once
 
 #include <atomic>
@@ -22,21 +22,20 @@ class Materials {
   // Both must outlive this.
   Materials(const Scene& scene, const MaterialOpener& open);
 
-  // All of them, those that no shape has, too. Throws Error, as ThrowIfFailed.
+  // Opens all of them, with or without a shape. Throws Error as ThrowIfFailed does.
   void OpenAll();
 
-  // The material, opened if it isn't yet, which other threads that need it wait for; null if it
-  // can't be, which ThrowIfFailed tells. May be called from several threads at once; openers run
-  // one at a time.
+  // The material that a path has hit, opened at the first call; null if that failed. May be called
+  // from several threads: openers run one at a time, and threads that need the material wait.
   const PreparedMaterial* Reach(std::size_t material);
 
   bool IsReached(std::size_t material) const { return slots_[material].reached; }
 
-  // Throws what opening did, of the failed materials the first. Paths that reach a failed material
-  // are to end, so that all others are followed as ever and the same materials fail each time.
+  // Throws what opening threw, for the first material of the scene that failed. Paths that hit such
+  // a material end there and the others go on, so that it is always the same one.
   void ThrowIfFailed() const;
 
-  // Of what was opened, and what of it reached.
+  // Materials opened, and needed because a path has hit them.
   Work Count() const;
 
  private:

@@ -1,29 +1,30 @@
 #include "pbnbrdf/render/mesh.h"
 
-#include <algorithm>
-
 #include "mesh_files.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
+#include "single_precision.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{4} << 30;
+// 4 GiB: more triangles than fit in memory with Embree's tree about them.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
 
-// Twice its area over its longest edge squared, below which it is no more than a line.
-constexpr double kLeastShape = 1e-12;
+// The least ratio of a triangle's double area to its longest edge squared. Where it is less, rounding
+// of the corners decides the normal.
+constexpr double kMinShape = 1e-12;
 
 bool HasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, bc = c - b;
   const double longest = std::max({Dot(ab, ab), Dot(ac, ac), Dot(bc, bc)});
-  return Length(Cross(ab, ac)) > kLeastShape * longest;
+  return Length(Cross(ab, ac)) > kMinShape * longest;
 }
 
 }  // namespace
 
 TriangleMesh ReadMesh(const std::string& path) {
-  const std::string bytes = ReadFile(path, kLargestFile);
+  const std::string bytes = ReadFile(path, kMaxFileBytes);
   try {
     TriangleMesh mesh = bytes.starts_with("ply") ? ParsePly(bytes) : ParseObj(bytes);
     if (mesh.triangles.empty()) Fail("no faces: neither PLY nor Wavefront OBJ");
@@ -44,10 +45,17 @@ TriangleMesh Transformed(const TriangleMesh& mesh, const Affine& map) {
   return placed;
 }
 
+TriangleMesh ParallelogramMesh(const Vec3& center, const Vec3& x, const Vec3& y) {
+  TriangleMesh mesh;
+  mesh.positions = {center - x - y, center + x - y, center + x + y, center - x + y};
+  mesh.triangles = {{{0, 1, 2}, {0, 2, 3}}};
+  return mesh;
+}
+
 void CheckTriangles(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    if (!(LargestCoordinate(mesh.positions[i]) <= kLargestCoordinate)) {
-      Fail("vertex ", i + 1, ": a coordinate isn't finite or is beyond ", kLargestCoordinate);
+    if (!(LargestCoordinate(mesh.positions[i]) <= kMaxCoordinate)) {
+      Fail("vertex ", i + 1, ": a coordinate isn't finite or is beyond ", kMaxCoordinate);
     }
   }
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {

@@ -1,5 +1,4 @@
-// mesh_files.h: meshes from the bytes of their files; mesh.h says what is read. Errors don't name
-// the file, and of a mesh that is read no more is sure than that its indices are in range.
+// mesh_files.h: parts of ReadMesh. Their errors do not name the file.
 #pragma once
 
 #include <string_view>
@@ -8,7 +7,12 @@
 
 namespace pbnbrdf {
 
+// The meshes have indices in range; CheckTriangles checks the rest.
 TriangleMesh ParseObj(std::string_view text);
 TriangleMesh ParsePly(std::string_view bytes);
+
+// Throws Error "triangle N: ..." or "vertex N: ..." if a triangle has no area, a normal has no length,
+// or a coordinate is not finite or too large.
+void CheckTriangles(const TriangleMesh& mesh);
 
 }  // namespace pbnbrdf

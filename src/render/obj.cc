@@ -1,4 +1,4 @@
-// Wavefront OBJ, as far as geometry goes.
+// Reads the geometry of Wavefront OBJ files.
 #include <map>
 
 #include "base/text.h"
@@ -8,10 +8,10 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no index
 
 struct Corner {
-  std::uint32_t position, normal;  // kNone: no normal
+  std::uint32_t position, normal;  // indices; the normal may be kNone
   auto operator<=>(const Corner&) const = default;
 };
 
@@ -56,7 +56,7 @@ class ObjParser {
     }
   }
 
-  // "v x y z", and more numbers that don't matter here: a weight or a colour.
+  // "v x y z". More numbers, a weight or a colour, are ignored.
   static Vec3 Vector(const std::vector<std::string_view>& words) {
     if (words.size() < 4)
       Fail("'", words[0], "' has ", words.size() - 1, " numbers, 3 were expected");
@@ -80,7 +80,7 @@ class ObjParser {
             has_normal ? Index(parts[2], normals_.size(), "normal") : kNone};
   }
 
-  // From 1, or backwards from -1, the last one so far.
+  // Indices count from 1, or backwards from -1, the last one so far.
   static std::uint32_t Index(const std::string& text, std::size_t count, const char* what) {
     const long number = ParseInteger(what, text), n = static_cast<long>(count);
     const long index = number < 0 ? n + number : number - 1;

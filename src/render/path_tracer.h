@@ -1,53 +1,59 @@
-// path_tracer.h: paths through blocks of pixels, all of which take their next step together.
+// path_tracer.h: traces paths through blocks of pixels and adds them to the image.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <span>
-#include <vector>
 
 #include "camera.h"
-#include "geometry.h"
-#include "lights.h"
+#include "direct_light.h"
 #include "materials.h"
-#include "pbnbrdf/render/render.h"
 #include "pixels.h"
-#include "request_log.h"
-#include "tiles.h"
+#include "scattering.h"
 
 namespace pbnbrdf {
 
-struct TileCounts {
-  std::int64_t dropped_samples = 0;
-  RenderWork work;
-};
-
-// Which samples to take: first, ..., first + count - 1 of each pixel of the blocks.
+// The samples first, ..., first + count - 1 of each pixel of the blocks.
 struct SampleRange {
   std::span<const PixelBlock> blocks;
   int first, count;
-  bool empty = false;  // the blocks are of a tile that is
+  bool empty = false;  // the blocks' tile is empty (tiles.h)
 };
 
 class PathTracer {
  public:
   // All must outlive this.
-  PathTracer(const Scene& scene, const PinholeCamera& camera, const Geometry& geometry,
-             const RenderOptions& options, Materials* materials);
+  PathTracer(const Scene& scene, const RenderOptions& options, Materials* materials);
 
-  // Adds the samples to pixels, which are those of the whole image, and what materials are asked for
-  // to the log, if there is one. May be called for several sets of blocks at once, with logs of
-  // their own.
-  void Trace(const SampleRange& range, std::span<PixelSum> pixels, TileCounts* counts,
-             RequestLog* log = nullptr) const;
+  // Adds the samples to pixels, which are those of the whole image, and returns their number. log:
+  // null, or where the BRDF requests of the paths go. May be called by several threads for
+  // different blocks, with different logs.
+  std::int64_t Trace(const SampleRange& range, std::span<PixelSum> pixels, Statistics* statistics,
+                     RequestLog* log = nullptr) const;
+
+  const PinholeCamera& camera() const { return camera_; }
 
  private:
-  friend class TilePaths;
+  // What a thread works with. It is kept from call to call, as getting memory anew takes longer.
+  struct Worker {
+    Wavefront wave;
+    BrdfBatch batch = {};
+    DirectLight direct_light = {};
+    Scattering scattering = {};
+  };
 
-  const Scene& scene_;
-  const PinholeCamera& camera_;
-  const Geometry& geometry_;
+  void StartPaths(const SampleRange& range, Wavefront* wave) const;
+  void StartPath(int x, int y, int sample, bool empty, Wavefront* wave) const;
+  void ShadeVertices(Worker* worker) const;
+  const PreparedMaterial* OpenMaterial(int material, ThreadStatistics* stats) const;
+
   const RenderOptions& options_;
   Materials& materials_;
+  const Film film_;
+  const PinholeCamera camera_;
+  const Geometry geometry_;
   const Lights lights_;
+  mutable tbb::enumerable_thread_specific<Worker> workers_;
 };
 
 }  // namespace pbnbrdf

@@ -4,17 +4,32 @@
 #include <cmath>
 
 #include "pbnbrdf/brdf/luminance.h"
+#include "rgb.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::int64_t kLeastSamples = 32;
-constexpr double kDark = 0.01;  // pixels of less radiance needn't be as exact
+// From 32 samples the standard error is known to about 1 / sqrt(2 * 31) = 13 %.
+constexpr std::int64_t kMinSamples = 32;
+
+// 1 % of white: the error of darker pixels is measured against this, as their noise is hardly seen.
+constexpr double kDarkLuminance = 0.01;
 
 }  // namespace
 
+std::vector<PixelBlock> Cut(const PixelBlock& block, int side) {
+  std::vector<PixelBlock> blocks;
+  for (int y = 0; y < block.height; y += side) {
+    for (int x = 0; x < block.width; x += side) {
+      blocks.push_back({block.x + x, block.y + y, std::min(side, block.width - x),
+                        std::min(side, block.height - y)});
+    }
+  }
+  return blocks;
+}
+
 void PixelSum::Add(const Rgb& sample) {
-  for (int c = 0; c < 3; ++c) radiance[c] += sample[c];
+  radiance = radiance + sample;
   const double y = Luminance(sample);
   luminance += y;
   luminance_squares += y * y;
@@ -28,22 +43,20 @@ double PixelSum::StandardError() const {
 }
 
 bool IsConverged(const PixelSum& pixel, double target_error) {
-  if (pixel.samples < kLeastSamples) return false;
+  if (pixel.samples < kMinSamples) return false;
   const double mean = pixel.luminance / static_cast<double>(pixel.samples);
-  return pixel.StandardError() < target_error * (mean + kDark);  // not if one overflowed
+  // False, too, if one of the sums has overflowed.
+  return pixel.StandardError() < target_error * (mean + kDarkLuminance);
 }
 
 std::int64_t RemoveConverged(std::span<const PixelSum> pixels, int image_width, double target_error,
                              std::vector<PixelBlock>* blocks) {
+  const auto converged = [&](const PixelSum& pixel) { return IsConverged(pixel, target_error); };
   std::int64_t removed = 0;
   std::erase_if(*blocks, [&](const PixelBlock& block) {
     for (int y = block.y; y < block.y + block.height; ++y) {
-      const auto row =
-          pixels.subspan(std::size_t(y) * std::size_t(image_width) + std::size_t(block.x),
-                         std::size_t(block.width));
-      for (const PixelSum& pixel : row) {
-        if (!IsConverged(pixel, target_error)) return false;
-      }
+      const auto begin = pixels.begin() + std::ptrdiff_t(y) * image_width + block.x;
+      if (!std::all_of(begin, begin + block.width, converged)) return false;
     }
     removed += std::int64_t(block.width) * block.height;
     return true;

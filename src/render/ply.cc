@@ -1,4 +1,4 @@
-// PLY (Turk 1994): a text header that names elements and their properties, then the values.
+// Reads PLY files (Turk 1994): a text header with elements and their properties, then the values.
 #include <bit>
 #include <cstring>
 
@@ -44,7 +44,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-// The values one after the other, from text or bytes.
+// The values of the body, one after the other, from text or bytes.
 class Values {
  public:
   Values(std::string_view data, bool is_text) : data_(data), is_text_(is_text) {}

@@ -1,4 +1,4 @@
-// random.h: random numbers of a path, whatever thread follows it.
+// random.h: the random numbers of a path; they do not depend on the thread that traces it.
 #pragma once
 
 #include <array>
@@ -6,14 +6,15 @@
 
 namespace pbnbrdf {
 
-// splitmix64 (Steele, Lea, Flood 2014), begun at a place that seed, pixel and sample decide.
+// splitmix64 (Steele, Lea, Flood 2014), started from the seed, the pixel and the sample.
 class Random {
  public:
   Random() = default;
   Random(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample)
       : state_(Mix(Mix(Mix(seed) + pixel) + sample)) {}
 
-  double Next() {  // uniform in [0, 1)
+  // Uniform in [0, 1).
+  double Next() {
     state_ += kStep;
     return static_cast<double>(Mix(state_) >> 11) * 0x1p-53;
   }

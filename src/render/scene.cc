@@ -5,24 +5,28 @@
 
 #include "base/text.h"
 #include "json_value.h"
+#include "mesh_files.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
+#include "single_precision.h"
 #include "sky.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = 64 << 20;
-constexpr int kMostPixelsAcross = 32768;
+constexpr std::uintmax_t kMaxFileBytes = 64 << 20;  // a scene of 300,000 spheres
+constexpr int kMaxFilmSide = 32768;  // with kMaxPixels, up to 8 times as wide as high
 
-// Runs what may find fault, and puts the place before the message.
-template <typename Function>
-auto About(const JsonValue& json, Function function) {
-  try {
-    return function();
-  } catch (const Error& error) {
-    json.Refuse(error.what());
-  }
+// Rounding alone leaves sines of 1e-16, and relative determinants likewise; what is below these bounds
+// has lost most of its digits.
+constexpr double kMinSine = 1e-9, kMinDeterminant = 1e-12;
+
+// The name's index. Throws Error, with the nearest name, if it is not among them.
+std::size_t IndexOf(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  if (names.empty()) Fail("'", name, "' isn't known; there are none");
+  Fail("'", name, "' isn't known; did you mean '", Nearest(names, name), "'?");
 }
 
 Camera ReadCamera(const JsonValue& json) {
@@ -35,7 +39,7 @@ Camera ReadCamera(const JsonValue& json) {
   if (!(camera.field_of_view < 180.0)) json.At("field_of_view").Refuse("must be less than 180");
   const Vec3 view = camera.target - camera.origin;
   if (!(Length(view) > 0.0)) json.At("target").Refuse("is where the camera is");
-  if (!(Length(Cross(view, camera.up)) > 1e-9 * Length(view))) {
+  if (!(Length(Cross(view, camera.up)) > kMinSine * Length(view))) {
     json.Refuse("up: points along the view");
   }
   return camera;
@@ -43,66 +47,64 @@ Camera ReadCamera(const JsonValue& json) {
 
 Film ReadFilm(const JsonValue& json) {
   json.CheckKeys({"width", "height"});
-  const Film film = {json.At("width").Whole(1, kMostPixelsAcross),
-                     json.At("height").Whole(1, kMostPixelsAcross)};
-  if (std::size_t(film.width) * std::size_t(film.height) > kMostPixels) {
-    json.Refuse(film.width, " x ", film.height, " pixels; at most ", kMostPixels);
+  const Film film = {json.At("width").Whole(1, kMaxFilmSide),
+                     json.At("height").Whole(1, kMaxFilmSide)};
+  if (std::size_t(film.width) * std::size_t(film.height) > kMaxPixels) {
+    json.Refuse(film.width, " x ", film.height, " pixels; at most ", kMaxPixels);
   }
   return film;
 }
 
+Affine ReadMatrix(const JsonValue& json) {
+  const std::vector<JsonValue> rows = json.Elements();
+  if (rows.size() != 3) json.Refuse("expected three rows of four numbers");
+  std::array<std::array<double, 4>, 3> m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<JsonValue> row = rows[i].Elements();
+    if (row.size() != 4) rows[i].Refuse("expected four numbers");
+    for (std::size_t j = 0; j < 4; ++j) m[i][j] = row[j].Number();
+  }
+  const auto column = [&](std::size_t j) { return Vec3{m[0][j], m[1][j], m[2][j]}; };
+  return {{column(0), column(1), column(2)}, column(3)};
+}
+
+// One step of a transform.
 Affine ReadStep(const JsonValue& json) {
   json.CheckKeys({"translate", "scale", "rotate", "matrix"});
   const auto members = json.Members();
   if (members.size() != 1) json.Refuse("expected one of translate, scale, rotate, matrix");
   const auto& [key, value] = members[0];
   if (key == "translate") return Affine::Translation(value.Vector());
-  if (key == "scale") {
-    if (value.IsArray()) return Affine::Scaling(value.Vector());
-    const double factor = value.Number();
-    return Affine::Scaling({factor, factor, factor});
-  }
+  if (key == "matrix") return ReadMatrix(value);
   if (key == "rotate") {
     value.CheckKeys({"axis", "degrees"});
     return Affine::Rotation(value.At("axis").Direction(), value.At("degrees").Number());
   }
-  const std::vector<JsonValue> rows = value.Elements();
-  if (rows.size() != 3) value.Refuse("expected three rows of four numbers");
-  std::array<std::array<double, 4>, 3> m;
-  for (int i = 0; i < 3; ++i) {
-    const std::vector<JsonValue> row = rows[i].Elements();
-    if (row.size() != 4) rows[i].Refuse("expected four numbers");
-    for (int j = 0; j < 4; ++j) m[i][j] = row[j].Number();
-  }
-  Affine map;
-  for (int j = 0; j < 3; ++j) map.axes[j] = {m[0][j], m[1][j], m[2][j]};
-  map.origin = {m[0][3], m[1][3], m[2][3]};
-  return map;
+  if (value.IsArray()) return Affine::Scaling(value.Vector());
+  const double factor = value.Number();
+  return Affine::Scaling({factor, factor, factor});
 }
 
-// The steps of "transform" one after the other, the first of them first.
+// "transform", a list of steps; the first step comes first.
 Affine ReadTransform(const JsonValue& json) {
   Affine map;
   if (!json.Has("transform")) return map;
   const JsonValue transform = json.At("transform");
   for (const JsonValue& step : transform.Elements()) map = Compose(ReadStep(step), map);
   const double size = std::max({Length(map.axes[0]), Length(map.axes[1]), Length(map.axes[2])});
-  if (!std::isfinite(map.Determinant()) || !IsFinite(map.origin)) {
+  if (!std::isfinite(map.Determinant()) || !std::isfinite(LargestCoordinate(map.origin))) {
     transform.Refuse("isn't finite");
   }
-  if (!(std::abs(map.Determinant()) > 1e-12 * size * size * size)) {
+  if (!(std::abs(map.Determinant()) > kMinDeterminant * size * size * size)) {
     transform.Refuse("flattens space: nothing has an area or a volume any more");
   }
   return map;
 }
 
-// x from -width / 2 to width / 2, y likewise, z = 0, seen from +z.
-MeshShape ReadRectangle(const JsonValue& json, const Affine& map) {
-  const double x = json.At("width").Positive() / 2.0, y = json.At("height").Positive() / 2.0;
-  TriangleMesh mesh;
-  mesh.positions = {{-x, -y, 0.0}, {x, -y, 0.0}, {x, y, 0.0}, {-x, y, 0.0}};
-  mesh.triangles = {{{0, 1, 2}, {0, 2, 3}}};
-  return {Transformed(mesh, map), map.axes[0]};
+// "width" along x and "height" along y, about the origin.
+TriangleMesh ReadRectangle(const JsonValue& json) {
+  return ParallelogramMesh({}, {json.At("width").Positive() / 2.0, 0.0, 0.0},
+                           {0.0, json.At("height").Positive() / 2.0, 0.0});
 }
 
 SphereShape ReadSphere(const JsonValue& json, const Affine& map) {
@@ -110,10 +112,8 @@ SphereShape ReadSphere(const JsonValue& json, const Affine& map) {
   const Vec3 center = json.Has("center") ? json.At("center").Vector() : Vec3{};
   const Affine sphere =
       Compose(map, Compose(Affine::Translation(center), Affine::Scaling({radius, radius, radius})));
-  double extent = LargestCoordinate(sphere.origin);
-  for (const Vec3& axis : sphere.axes) extent += LargestCoordinate(axis);
-  if (!(extent <= kLargestCoordinate)) {
-    json.Refuse("a coordinate isn't finite or is beyond ", kLargestCoordinate);
+  if (!(LargestCoordinate(sphere) <= kMaxCoordinate)) {
+    json.Refuse("a coordinate isn't finite or is beyond ", kMaxCoordinate);
   }
   if (!std::isnormal(float(radius)) || !std::isnormal(sphere.Determinant())) {
     json.At("radius").Refuse("is ", radius, ", too small");
@@ -154,53 +154,31 @@ class SceneReader {
     }
   }
 
-  std::vector<std::string> MaterialNames() const {
+  std::size_t MaterialIndex(const std::string& name) const {
     std::vector<std::string> names;
     for (const SceneMaterial& material : scene_.materials) names.push_back(material.name);
-    return names;
+    return IndexOf(names, name);
   }
 
-  // The material's number, or a suggestion in *nearest; -1: there is none of that name.
-  int FindMaterial(const std::string& name, std::string* nearest) const {
-    const std::vector<std::string> names = MaterialNames();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<int>(found - names.begin());
-    *nearest = names.empty() ? "the scene has no materials"
-                             : "did you mean '" + Nearest(names, name) + "'?";
-    return -1;
-  }
-
-  void ChangeSources() {
+  void ChangeSources() try {
     for (const auto& [name, source] : changes_.sources) {
-      std::string nearest;
-      const int material = FindMaterial(name, &nearest);
-      if (material < 0) Fail("materials: there is no '", name, "'; ", nearest);
-      scene_.materials[material].source = source;
+      scene_.materials[MaterialIndex(name)].source = source;
     }
+  } catch (const Error& error) {
+    Fail("materials: ", error.what());
   }
 
-  int ReadMaterialName(const JsonValue& json) const {
-    std::string nearest;
-    const int material = FindMaterial(json.Text(), &nearest);
-    if (material < 0) json.Refuse("'", json.Text(), "' isn't known; ", nearest);
-    return material;
-  }
-
-  // The known keys of each type; refuses others.
+  // "type", one of the given ones; refuses keys that this type does not have.
   using Types = std::vector<std::pair<std::string, std::vector<std::string>>>;
   static std::string ReadType(const JsonValue& json, const Types& types) {
-    const JsonValue value = json.At("type");
-    const std::string type = value.Text();
+    const JsonValue type = json.At("type");
     std::vector<std::string> names;
-    for (const auto& [name, keys] : types) {
-      names.push_back(name);
-      if (name != type) continue;
-      std::vector<std::string> known = keys;
-      known.push_back("type");
-      json.CheckKeys(known);
-      return type;
-    }
-    value.Refuse("'", type, "' isn't known; did you mean '", Nearest(names, type), "'?");
+    for (const auto& [name, keys] : types) names.push_back(name);
+    std::vector<std::string> keys =
+        types[type.Check([&] { return IndexOf(names, type.Text()); })].second;
+    keys.push_back("type");
+    json.CheckKeys(keys);
+    return type.Text();
   }
 
   void ReadShape(const JsonValue& json) {
@@ -209,19 +187,23 @@ class SceneReader {
                         {"rectangle", {"width", "height", "transform", "material"}},
                         {"mesh", {"file", "transform", "material"}}});
     const Affine map = ReadTransform(json);
+    const JsonValue material = json.At("material");
     Shape shape;
-    shape.material = ReadMaterialName(json.At("material"));
+    shape.material =
+        static_cast<int>(material.Check([&] { return MaterialIndex(material.Text()); }));
     if (type == "sphere") {
       shape.sphere = ReadSphere(json, map);
-    } else if (type == "rectangle") {
-      shape.mesh = ReadRectangle(json, map);
     } else {
-      const JsonValue file = json.At("file");
-      shape.mesh = {Transformed(About(file, [&] { return ReadMesh(PathOf(file)); }), map),
-                    map.axes[0]};
+      const TriangleMesh mesh =
+          type == "mesh" ? ReadMeshFile(json.At("file")) : ReadRectangle(json);
+      shape.mesh = {Transformed(mesh, map), map.axes[0]};
+      json.Check([&] { CheckTriangles(shape.mesh.mesh); });
     }
-    if (!shape.sphere) About(json, [&] { CheckTriangles(shape.mesh.mesh); });
     scene_.shapes.push_back(std::move(shape));
+  }
+
+  TriangleMesh ReadMeshFile(const JsonValue& file) const {
+    return file.Check([&] { return ReadMesh(PathOf(file)); });
   }
 
   void ReadLight(const JsonValue& json) {
@@ -231,7 +213,7 @@ class SceneReader {
                         {"directional", {"direction", "irradiance"}},
                         {"rectangle", {"width", "height", "transform", "radiance"}}});
     if (type == "environment") {
-      if (scene_.environment) json.Refuse("a second environment");
+      if (scene_.environment) json.Refuse("a second environment; a scene has at most one");
       scene_.environment = ReadEnvironment(json);
     } else if (type == "point") {
       scene_.point_lights.push_back({json.At("position").Vector(), json.At("intensity").Color()});
@@ -240,8 +222,7 @@ class SceneReader {
           {json.At("direction").Direction(), json.At("irradiance").Color()});
     } else {
       const Affine map = ReadTransform(json);
-      const MeshShape shape = ReadRectangle(json, map);
-      About(json, [&] { CheckTriangles(shape.mesh); });
+      json.Check([&] { CheckTriangles(Transformed(ReadRectangle(json), map)); });
       scene_.rectangle_lights.push_back(
           {map.origin, (json.At("width").Number() / 2.0) * map.axes[0],
            (json.At("height").Number() / 2.0) * map.axes[1], json.At("radiance").Color()});
@@ -254,17 +235,14 @@ class SceneReader {
     }
     const double rotation = json.Has("rotation") ? json.At("rotation").Number() : 0.0;
     const double scale = json.Has("scale") ? json.At("scale").NotNegative() : 1.0;
-    return About(json, [&] { return EnvironmentMap(EnvironmentImage(json), rotation, scale); });
+    return json.Check([&] { return EnvironmentMap(EnvironmentImage(json), rotation, scale); });
   }
 
   Image EnvironmentImage(const JsonValue& json) const {
     if (!changes_.environment.empty()) return ReadExr(changes_.environment);
     if (json.Has("file")) return ReadExr(PathOf(json.At("file")));
     if (json.Has("sky")) return SkyImage(ReadSky(json.At("sky")));
-    const Rgb radiance = json.At("radiance").Color();
-    Image texel(1, 1);
-    for (int c = 0; c < 3; ++c) texel.rgb[c] = static_cast<float>(radiance[c]);
-    return texel;
+    return ConstantImage(json.At("radiance").Color());
   }
 
   static Sky ReadSky(const JsonValue& json) {
@@ -279,14 +257,14 @@ class SceneReader {
     return sky;
   }
 
-  // A file in the scene's folder, or whatever the opener makes of it.
+  // A file in the scene's folder, or else a source that only the caller's MaterialOpener knows.
   std::string SourceOf(const JsonValue& json) const {
     std::error_code code;
     const std::string path = PathOf(json);
     return std::filesystem::is_regular_file(path, code) ? path : json.Text();
   }
 
-  // Relative to the scene file's folder.
+  // Of a file that is named relative to the scene's folder.
   std::string PathOf(const JsonValue& json) const { return folder_ / json.Text(); }
 
   std::filesystem::path folder_;
@@ -297,7 +275,7 @@ class SceneReader {
 }  // namespace
 
 Scene ReadScene(const std::string& path, const SceneChanges& changes) {
-  const std::string text = ReadFile(path, kLargestFile);
+  const std::string text = ReadFile(path, kMaxFileBytes);
   try {
     const nlohmann::ordered_json json = ParseJson(text);
     return SceneReader(path, changes).Read(JsonValue(json, ""));

@@ -1,4 +1,4 @@
-// sky.h: a simple sky, for scenes that come without a measured one.
+// sky.h: environment maps that need no file.
 #pragma once
 
 #include "pbnbrdf/brdf/direction.h"
@@ -6,15 +6,18 @@
 
 namespace pbnbrdf {
 
-// Radiance, W / (m^2 sr). Above the horizon it goes from `horizon` to `zenith` in proportion to y,
-// the cosine of the zenith angle; below it is `ground`. The sun is a disk.
+// Radiance, W / (m^2 sr). Above the horizon it is linear in y, the cosine of the zenith angle, from
+// `horizon` to `zenith`. Below it is `ground`. The sun is a disk.
 struct Sky {
   Rgb zenith = {}, horizon = {}, ground = {}, sun = {};
-  Vec3 sun_direction = {0.0, 1.0, 0.0};  // of unit length, towards the sun
-  double sun_radius = 0.0;               // as seen, degrees; 0: no sun
+  Vec3 sun_direction = {0.0, 1.0, 0.0};  // to the sun, of unit length
+  double sun_radius = 0.0;               // angular, degrees; 0: no sun
 };
 
-// As an environment map takes it, 1024 x 512; each texel holds the mean of 4 x 4 directions.
+// The sky as an environment map, 1024 x 512. A texel is the mean of 4 x 4 directions.
 Image SkyImage(const Sky& sky);
+
+// One texel, for the same radiance from everywhere.
+Image ConstantImage(const Rgb& radiance);
 
 }  // namespace pbnbrdf

@@ -5,31 +5,28 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 
 namespace pbnbrdf {
 namespace {
 
-// In pixels of the image.
-struct Bounds {
-  double left, right, top, bottom;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  bool Touches(const PixelBlock& block) const {
+// A rectangle of the image, in pixels.
+struct Bounds {
+  double left = kInfinity, right = -kInfinity, top = kInfinity, bottom = -kInfinity;
+
+  bool Overlaps(const PixelBlock& block) const {
     return left <= block.x + block.width && right >= block.x && top <= block.y + block.height &&
            bottom >= block.y;
   }
 };
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Bounds kEverywhere = {-kInfinity, kInfinity, -kInfinity, kInfinity};
-constexpr Bounds kNowhere = {kInfinity, -kInfinity, kInfinity, -kInfinity};
-
-// Of the points' convex hull.
-Bounds BoundsOf(std::span<const Vec3> points, const PinholeCamera& camera) {
-  Bounds bounds = kNowhere;
-  for (const Vec3& point : points) {
+// The bounds of a mesh as the camera sees it.
+Bounds BoundsOf(const TriangleMesh& mesh, const PinholeCamera& camera) {
+  Bounds bounds;
+  for (const Vec3& point : mesh.positions) {
     Projection at;
-    if (!camera.Project(point, &at)) return kEverywhere;
+    if (!camera.Project(point, &at)) return {-kInfinity, kInfinity, -kInfinity, kInfinity};
     bounds.left = std::min(bounds.left, at.x - at.slack);
     bounds.right = std::max(bounds.right, at.x + at.slack);
     bounds.top = std::min(bounds.top, at.y - at.slack);
@@ -38,23 +35,11 @@ Bounds BoundsOf(std::span<const Vec3> points, const PinholeCamera& camera) {
   return bounds;
 }
 
-std::vector<Bounds> BoundsOfMeshes(const Scene& scene, const PinholeCamera& camera) {
-  std::vector<Bounds> all;
-  for (const Shape& shape : scene.shapes) {
-    if (!shape.sphere) all.push_back(BoundsOf(shape.mesh.mesh.positions, camera));
-  }
-  for (const auto& [center, x, y, radiance] : scene.rectangle_lights) {
-    const std::array<Vec3, 4> corners = {center - x - y, center + x - y, center + x + y,
-                                         center - x + y};
-    all.push_back(BoundsOf(corners, camera));
-  }
-  return all;
-}
-
-// Of two vectors that aren't zero, in radians.
+// The angle between two vectors that are not zero, in radians.
 double Angle(const Vec3& a, const Vec3& b) { return std::atan2(Length(Cross(a, b)), Dot(a, b)); }
 
-// Directions from the camera through the middle of a block and its corners, with slack.
+// Directions from the camera through the middle of a block and through its corners, moved out by
+// the camera's slack.
 struct Pyramid {
   Vec3 middle;
   std::array<Vec3, 4> corners;
@@ -70,7 +55,7 @@ Pyramid PyramidOf(const PixelBlock& block, const PinholeCamera& camera) {
            direction(right, bottom)}};
 }
 
-// A sphere or an ellipsoid as the camera sees it: a cone in the space where it is the unit sphere.
+// A sphere or an ellipsoid as the camera sees it: a cone, in the space where it is the unit sphere.
 class Silhouette {
  public:
   Silhouette(const SphereShape& sphere, const Vec3& camera) : to_unit_(sphere.to_world.Inverse()) {
@@ -84,15 +69,15 @@ class Silhouette {
     if (outside_) half_angle_ = std::asin(radius / distance) + kSinglePrecision;
   }
 
-  // Both the sphere and the block are taken for the cones about them.
-  bool Touches(const Pyramid& block) const {
+  // Compares the sphere's cone with a cone about the block.
+  bool Overlaps(const Pyramid& block) const {
     if (!outside_) return true;
     const Vec3 middle = to_unit_.Vector(block.middle);
     double spread = 0.0;
     for (const Vec3& corner : block.corners) {
       spread = std::max(spread, Angle(middle, to_unit_.Vector(corner)));
     }
-    // The cone about the corners has all that is between them if it is less than a half space.
+    // A cone about the corners contains the block if it is narrower than a half space.
     return !(spread < 0.5 * std::numbers::pi && Angle(middle, axis_) > spread + half_angle_);
   }
 
@@ -103,39 +88,28 @@ class Silhouette {
   double half_angle_ = 0.0;
 };
 
-std::vector<Silhouette> SilhouettesOf(const Scene& scene) {
-  std::vector<Silhouette> silhouettes;
-  for (const Shape& shape : scene.shapes) {
-    if (shape.sphere) silhouettes.emplace_back(*shape.sphere, scene.camera.origin);
-  }
-  return silhouettes;
-}
-
 }  // namespace
 
-std::vector<PixelBlock> Cut(const PixelBlock& block, int size) {
-  std::vector<PixelBlock> blocks;
-  for (int y = 0; y < block.height; y += size) {
-    for (int x = 0; x < block.width; x += size) {
-      blocks.push_back({block.x + x, block.y + y, std::min(size, block.width - x),
-                        std::min(size, block.height - y)});
+std::vector<Tile> TilesOf(const Scene& scene, const PinholeCamera& camera) {
+  std::vector<Bounds> meshes;
+  std::vector<Silhouette> spheres;
+  for (const Shape& shape : scene.shapes) {
+    if (shape.sphere) {
+      spheres.emplace_back(*shape.sphere, scene.camera.origin);
+    } else {
+      meshes.push_back(BoundsOf(shape.mesh.mesh, camera));
     }
   }
-  return blocks;
-}
-
-std::vector<Tile> TilesOf(const Scene& scene, const PinholeCamera& camera) {
-  const std::vector<Bounds> meshes = BoundsOfMeshes(scene, camera);
-  const std::vector<Silhouette> spheres = SilhouettesOf(scene);
+  for (const auto& [center, x, y, radiance] : scene.rectangle_lights) {
+    meshes.push_back(BoundsOf(ParallelogramMesh(center, x, y), camera));
+  }
   std::vector<Tile> tiles;
   for (const PixelBlock& block : Cut({0, 0, scene.film.width, scene.film.height}, kTileSize)) {
     const Pyramid pyramid = PyramidOf(block, camera);
-    const bool seen = std::any_of(meshes.begin(), meshes.end(),
-                                  [&](const Bounds& mesh) { return mesh.Touches(block); }) ||
-                      std::any_of(spheres.begin(), spheres.end(), [&](const Silhouette& sphere) {
-                        return sphere.Touches(pyramid);
-                      });
-    tiles.push_back({block, !seen});
+    const auto overlaps_block = [&](const Bounds& mesh) { return mesh.Overlaps(block); };
+    const auto overlaps_pyramid = [&](const Silhouette& s) { return s.Overlaps(pyramid); };
+    tiles.push_back({block, std::none_of(meshes.begin(), meshes.end(), overlaps_block) &&
+                                std::none_of(spheres.begin(), spheres.end(), overlaps_pyramid)});
   }
   return tiles;
 }

@@ -1,30 +1,23 @@
-// tiles.h: the parts of the image that are rendered at a time, and which of them show shapes.
+// tiles.h: the tiles of an image, and which of them show nothing but the environment.
 #pragma once
 
 #include <vector>
 
 #include "camera.h"
-#include "pbnbrdf/render/scene.h"
+#include "pixels.h"
 
 namespace pbnbrdf {
 
-struct PixelBlock {
-  int x, y, width, height;
-};
-
 struct Tile {
   PixelBlock block;
-  bool empty;  // no ray through it meets a shape or a rectangle light
+  bool empty;  // no ray through it hits a shape or a rectangle light
 };
 
-inline constexpr int kTileSize = 16;
+inline constexpr int kTileSize = 16;  // as pbrt's
 
-// Row by row. A mesh is taken for the rectangle about its points in the image, and for everywhere if
-// one of them isn't in front of the camera; a sphere for the cone in which it is seen. Both with a
-// pixel of slack: tiles that aren't called empty may yet be.
+// The tiles, row by row. Conservative: a tile that is not called empty may be. A mesh is bounded by a
+// rectangle of the image, or by all of it if a vertex is not in front of the camera; a sphere by the
+// cone in which the camera sees it; both enlarged by a pixel.
 std::vector<Tile> TilesOf(const Scene& scene, const PinholeCamera& camera);
-
-// The block cut into squares of the given size; those at its right and bottom may be smaller.
-std::vector<PixelBlock> Cut(const PixelBlock& block, int size);
 
 }  // namespace pbnbrdf

@@ -1,4 +1,4 @@
-// vertex.h: where a path is reflected.
+// vertex.h: a vertex of a path, where a material reflects it.
 #pragma once
 
 #include <cstddef>
@@ -24,11 +24,11 @@ struct Vertex {
   Vec3 wo;      // to the viewer, in the frame
   double margin;
 
-  // The start of a ray that leaves on the viewer's side.
+  // A ray that leaves on the viewer's side.
   Ray RayTo(const Vec3& direction) const { return {position + margin * normal, direction}; }
 };
 
-// Where a path that travels in `direction` meets a shape.
+// direction: in which the path has come to the hit.
 Vertex MakeVertex(const Hit& hit, std::size_t path, const Vec3& direction);
 
 }  // namespace pbnbrdf

@@ -23,11 +23,19 @@ Work& Work::operator+=(const Work& other) {
 }
 
 RenderWork& RenderWork::operator+=(const RenderWork& other) {
-  for (const auto kind : {&RenderWork::materials, &RenderWork::samples, &RenderWork::lanes,
-                          &RenderWork::rays, &RenderWork::brdf_values}) {
-    this->*kind += other.*kind;
-  }
+  for (const WorkKind& kind : WorkKinds()) this->*kind.work += other.*kind.work;
   return *this;
+}
+
+const std::vector<WorkKind>& WorkKinds() {
+  using enum SkipReason;
+  static const std::vector<WorkKind> kinds = {
+      {"materials", &RenderWork::materials, {kUnreferenced, kNotReached}},
+      {"samples", &RenderWork::samples, {kConverged}},
+      {"path_vertices", &RenderWork::path_vertices, {kEnded}},
+      {"rays", &RenderWork::rays, {kBelowHorizon, kUnlit, kEmptyTiles}},
+      {"brdf_values", &RenderWork::brdf_values, {kBelowHorizon, kOccluded, kUnlit}}};
+  return kinds;
 }
 
 }  // namespace pbnbrdf

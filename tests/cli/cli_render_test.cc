@@ -72,7 +72,7 @@ TEST_F(CliRender, CountsWhatItLeavesOut) {
   const Result with = Run(render + " --out=" + Path("a.exr"));
   ASSERT_EQ(with.status, 0) << with.err;
   const json least = json::parse(ReadFile(Path("summary.json"), 1 << 20));
-  for (const char* text : {"\n  materials ", "\n  samples ", "\n  lanes ", "\n  rays ",
+  for (const char* text : {"\n  materials ", "\n  samples ", "\n  path_vertices ", "\n  rays ",
                            "\n  brdf_values ", " ended\n", " unlit (saved about "}) {
     EXPECT_THAT(with.out, HasSubstr(text));
   }
@@ -158,7 +158,7 @@ TEST_F(CliRender, Errors) {
   ExpectError(render + "--summary=" + Path("s.json") + " --out=-", 2,
               "--summary: --out must be a file");
   ExpectError(render + "--material=surfac=ggx:alpha=0.3" + out, 1,
-              "sphere.json: materials: there is no 'surfac'; did you mean 'surface'?");
+              "sphere.json: materials: 'surfac' isn't known; did you mean 'surface'?");
   ExpectError(render + "--material=surface=none.binary" + out, 1,
               "sphere.json: materials.surface: none.binary: no such file");
   ExpectError(render + "--environment=" + Path("none.exr") + out, 1, "none.exr: no such file");

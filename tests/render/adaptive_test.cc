@@ -32,7 +32,7 @@ TEST(Pixels, TheRule) {
 TEST(Pixels, ABlockStaysWholeUntilAllOfItIsConverged) {
   std::vector<PixelSum> pixels(6 * 4, PixelOf(std::vector<double>(40, 1.0)));
   pixels[3 * 6 + 3] = PixelOf({1.0});
-  std::vector<PixelBlock> blocks = Cut({0, 0, 6, 4}, kJudgedTogether);
+  std::vector<PixelBlock> blocks = Cut({0, 0, 6, 4}, kConvergenceBlock);
   EXPECT_EQ(RemoveConverged(pixels, 6, 0.1, &blocks), 8);
   ASSERT_EQ(blocks.size(), 1u);
   EXPECT_EQ(blocks[0].x, 0);
@@ -109,7 +109,7 @@ TEST(Adaptive, APixelIsThatOfARenderWithItsSamples) {
   }
 }
 
-// The samples' luminances, from the images of the first 1, 2, ..., count of them.
+// The luminance of each single sample, from images of the first 1, 2, ..., count samples.
 std::vector<PixelSum> FirstSamples(int count) {
   std::vector<PixelSum> pixels(kPixels * kPixels);
   std::vector<double> sums(pixels.size());

@@ -7,7 +7,7 @@
 namespace pbnbrdf {
 namespace {
 
-// f grows so that log(1 + f cos_i) grows by `change` everywhere.
+// A BRDF whose log(1 + f cos_i) is larger by `change` at all directions.
 class GrownBrdf final : public PointwiseBrdf {
  public:
   GrownBrdf(std::unique_ptr<Brdf> brdf, double change) : brdf_(std::move(brdf)), change_(change) {}
@@ -71,7 +71,7 @@ TEST(Demand, SaysWhatIsReached) {
   }
 }
 
-// All light that comes from a convex shape under a lamp alone has been reflected by it once.
+// A convex shape under a directional light reflects all of its light once.
 TEST(Demand, SharesAddUpWhereLightIsReflectedOnce) {
   Scene scene = SceneFrom(5.0, 40.0, 24);
   AddSphere({-1.1, 0.0, 0.0}, 1.0, "white:0.5", &scene);
@@ -86,7 +86,7 @@ TEST(Demand, SharesAddUpWhereLightIsReflectedOnce) {
   EXPECT_GT(twice[0].share + twice[2].share, 1.001);  // some went from one to the other
 }
 
-// The weights of all requests say what the image makes of a small change of the material.
+// The derivative of the image's luminance, by finite differences of the material.
 TEST(Demand, SensitivityIsTheImagesDerivative) {
   constexpr double kChange = 1e-4;
   const Scene scene = BallOnFloor();
@@ -132,13 +132,13 @@ TEST(Demand, OfASmallerFilmIsAboutTheSame) {
   Scene scene = BallOnFloor();
   const auto all = MeasureDemand(scene, OpenUnchanged, {.paths = 256 * 576});
   scene.film = {240, 240};
-  const auto part = MeasureDemand(scene, OpenUnchanged, {.paths = 256 * 576, .most_pixels = 576});
+  const auto part = MeasureDemand(scene, OpenUnchanged, {.paths = 256 * 576, .max_pixels = 576});
   for (int i : {0, 1}) EXPECT_NEAR(part[i].share, all[i].share, 0.02 * all[i].share);
 }
 
 TEST(Demand, NamesWhatCannotBe) {
-  EXPECT_EQ(ErrorOf([] { MeasureDemand(BallOnFloor(), OpenUnchanged, {.most_pixels = 0}); }),
-            "DemandOptions::most_pixels = 0; must be >= 1");
+  EXPECT_EQ(ErrorOf([] { MeasureDemand(BallOnFloor(), OpenUnchanged, {.max_pixels = 0}); }),
+            "DemandOptions::max_pixels = 0; must be >= 1");
   Scene scene = BallOnFloor();
   scene.materials[1].source = "builtin:no-such-material";
   EXPECT_THAT(ErrorOf([&] { MeasureDemand(scene, OpenUnchanged); }),

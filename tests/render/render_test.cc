@@ -11,7 +11,7 @@
 namespace pbnbrdf {
 namespace {
 
-// Of what PixelMean integrates, and of single precision in the image.
+// Relative errors: of PixelMean's quadrature, and of the image's single precision.
 constexpr double kSmooth = 1e-3, kExact = 1e-5;
 
 class EveryEstimator : public testing::TestWithParam<Estimator> {
@@ -233,7 +233,7 @@ TEST(Render, ARectangleLightIsSeenFromItsFrontOnly) {
     scene.environment = EnvironmentMap::Constant({9.0, 9.0, 9.0});  // hidden
     const Rendering rendering = RenderTest(scene, {.samples_per_pixel = 2, .max_bounces = 0});
     for (int c = 0; c < 3; ++c) {
-      EXPECT_EQ(rendering.image.pixel(1, 2)[c], sign > 0.0 ? c + 1.0f : 0.0f);
+      EXPECT_EQ(rendering.image.pixel(1, 2)[c], sign > 0.0 ? float(c + 1) : 0.0f);
     }
   }
 }
@@ -369,7 +369,7 @@ TEST(Render, SameBitsWhateverTheThreads) {
   EXPECT_NE(one, render(1, 4));
 }
 
-// A constant that counts how it is asked.
+// A constant BRDF that counts its evaluations.
 struct Asked {
   std::atomic<std::int64_t> calls = 0, values = 0, below = 0;
 };

@@ -1,4 +1,4 @@
-// render_test_util.h: scenes put together in code, and what their images should be.
+// render_test_util.h: simple scenes, and comparisons of their images with known radiance.
 #pragma once
 
 #include <functional>
@@ -29,19 +29,17 @@ inline void AddSphere(const Vec3& center, double radius, const std::string& sour
   scene->shapes.push_back(shape);
 }
 
-// Of the given half sides, about the center.
+// x, y: half of its sides.
 inline void AddRectangle(const Vec3& center, const Vec3& x, const Vec3& y,
                          const std::string& source, Scene* scene) {
   Shape shape;
-  shape.mesh.mesh.positions = {center - x - y, center + x - y, center + x + y, center - x + y};
-  shape.mesh.mesh.triangles = {{{0, 1, 2}, {0, 2, 3}}};
-  shape.mesh.tangent = x;
+  shape.mesh = {ParallelogramMesh(center, x, y), x};
   shape.material = static_cast<int>(scene->materials.size());
   scene->materials.push_back({source, source});
   scene->shapes.push_back(shape);
 }
 
-// "white:0.5" is Lambertian of that albedo; else what the brdf module opens.
+// "white:0.5" is Lambertian with that albedo; OpenBrdf opens all else.
 inline std::unique_ptr<Brdf> OpenTestMaterial(const std::string& source) {
   if (!source.starts_with("white:")) return OpenBrdf(source);
   const double rho = ParseNumber("rho", source.substr(6));
@@ -68,7 +66,7 @@ inline double PixelMean(const Scene& scene, int x, int y,
   return sum / (kSub * kSub);
 }
 
-// The distance to the sphere's near side from the camera of SceneFrom; 0 if it isn't met.
+// The distance from a point outside of the sphere to its near side; 0 if the ray misses it.
 inline double DistanceToSphere(const Vec3& from, const Vec3& direction, const Vec3& center,
                                double radius) {
   const Vec3 o = from - center;
@@ -88,9 +86,9 @@ inline MeanAndError MeanOf(const std::vector<double>& values) {
   return {sum / n, std::sqrt(squares / (n - 1.0) / n)};
 }
 
-// Expects that image and expected, of one channel, differ by noise only: over each quarter of the
-// pixels the mean of the difference is 0 within 3 standard errors. What the expected means
-// themselves are off by, relative to the largest of them, is to be given.
+// Expects that one channel of the image differs from the expected means by noise only: in each quarter
+// of the image the mean difference is 0 within 3 standard errors. relative_error: of the expected means
+// themselves, relative to the largest of them.
 inline void ExpectNoiseOnly(const Image& image, int channel,
                             const std::function<double(int, int)>& expected,
                             double relative_error) {

@@ -101,7 +101,7 @@ TEST_F(SceneFile, TakesEnvironmentAndSourcesFromTheCaller) {
   EXPECT_EQ(Read(text).environment->Radiance({0.0, 1.0, 0.0})[0], 6.0);
 
   EXPECT_EQ(Error("{", "{", {.sources = {{"golt", "x"}}}),
-            "materials: there is no 'golt'; did you mean 'gold'?");
+            "materials: 'golt' isn't known; did you mean 'gold'?");
   EXPECT_THAT(Error("{", "{", {.environment = folder_ / "none.exr"}),
               HasSubstr("none.exr: no such file"));
 }
@@ -126,7 +126,7 @@ TEST_F(SceneFile, UnknownKeysAreNamedWithTheNearest) {
             "lights[1].type: 'pint' isn't known; did you mean 'point'?");
   EXPECT_EQ(Error("\"material\": \"wall\"", "\"material\": \"wal\""),
             "shapes[1].material: 'wal' isn't known; did you mean 'wall'?");
-  EXPECT_EQ(Error("\"width\": 30", "\"width\": 30, \"width\": 31"), "key \"width\" is there twice");
+  EXPECT_EQ(Error("\"width\": 30", "\"width\": 30, \"width\": 31"), "key \"width\" is given twice");
 }
 
 TEST_F(SceneFile, ValuesOutOfRangeAreNamedByTheirPlace) {
@@ -156,13 +156,15 @@ TEST_F(SceneFile, ValuesOutOfRangeAreNamedByTheirPlace) {
   EXPECT_EQ(Error("0.9", "0"), "materials.gold.scale_to_albedo: is 0; must be > 0");
   EXPECT_EQ(Error("\"intensity\": 7", "\"intensity\": [1, -1, 1]"),
             "lights[1].intensity: has a channel of -1; must be >= 0");
+  EXPECT_EQ(Error("\"radiance\": [1, 2, 3]", "\"radiance\": -1"),
+            "lights[0].radiance: has a channel of -1; must be >= 0");
   EXPECT_EQ(Error("[0, -2, 0]", "[0, 0, 0]"),
             "lights[2].direction: must have a length that isn't 0");
   EXPECT_EQ(Error("\"radiance\": [1, 2, 3], ", ""),
             "lights[0]: expected one of file, radiance and sky");
   EXPECT_EQ(Error("\"type\": \"point\", \"position\": [0, 3, 0], \"intensity\": 7",
                   "\"type\": \"environment\", \"radiance\": 1"),
-            "lights[1]: a second environment");
+            "lights[1]: a second environment; a scene has at most one");
 }
 
 TEST_F(SceneFile, GeometryWithoutAreaIsRefused) {

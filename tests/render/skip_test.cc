@@ -1,4 +1,4 @@
-// What is left out doesn't change a bit of the image, and is counted.
+// Skipping work leaves the image the same, bit for bit, and is counted.
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -14,11 +14,12 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::array kKinds = {&RenderWork::materials, &RenderWork::samples, &RenderWork::lanes,
-                               &RenderWork::rays, &RenderWork::brdf_values};
+constexpr std::array kKinds = {&RenderWork::materials, &RenderWork::samples,
+                               &RenderWork::path_vertices, &RenderWork::rays,
+                               &RenderWork::brdf_values};
 constexpr std::array kEveryEstimator = {Estimator::kMis, Estimator::kBrdf, Estimator::kLight};
 
-// With a proposal given, so that materials open quickly.
+// Gives a proposal: fitting one takes longer than these renders.
 OpenedMaterial OpenQuickly(const std::string& source) {
   return {OpenTestMaterial(source), LobeProposal{.alpha = 0.3, .lobe_weight = 0.6}};
 }
@@ -36,7 +37,7 @@ RenderWork ExpectSameWithoutSkip(const Scene& scene, RenderOptions options) {
     const Work& least = with.summary.work.*kind;
     EXPECT_EQ(least.needed, most.needed);
     EXPECT_EQ(least.done, least.needed);
-    const bool either_way = kind == &RenderWork::lanes || kind == &RenderWork::samples;
+    const bool either_way = kind == &RenderWork::path_vertices || kind == &RenderWork::samples;
     EXPECT_EQ(most.done, least.done + (either_way ? 0 : least.AllSkipped()));
     EXPECT_EQ(most.AllSkipped(), either_way ? least.AllSkipped() : 0);
   }
@@ -117,7 +118,7 @@ TEST(Skip, RandomScenesKeepTheirBitsAndSkipForEveryReason) {
   EXPECT_GT(all.brdf_values.Skipped(SkipReason::kBelowHorizon), 0);
   EXPECT_GT(all.brdf_values.Skipped(SkipReason::kOccluded), 0);
   EXPECT_GT(all.brdf_values.Skipped(SkipReason::kUnlit), 0);
-  EXPECT_GT(all.lanes.Skipped(SkipReason::kEnded), 0);
+  EXPECT_GT(all.path_vertices.Skipped(SkipReason::kEnded), 0);
 }
 
 TEST(Skip, PathsToNothingAskForNothing) {
@@ -129,7 +130,7 @@ TEST(Skip, PathsToNothingAskForNothing) {
   EXPECT_EQ(dark.brdf_values.done, 0);
   EXPECT_EQ(dark.brdf_values.Skipped(SkipReason::kUnlit), paths);
   EXPECT_EQ(dark.rays.done, 2 * paths);
-  EXPECT_EQ(dark.lanes.done, 2 * paths);
+  EXPECT_EQ(dark.path_vertices.done, 2 * paths);
   scene.directional_lights.push_back({{0.0, 0.0, 1.0}, {1.0, 1.0, 1.0}});  // from behind
   const RenderWork behind = RenderTest(scene, options).summary.work;
   EXPECT_EQ(behind.brdf_values.done, 0);
@@ -204,8 +205,8 @@ TEST(Skip, AMaterialOutOfSightMayBeMissing) {
   EXPECT_EQ(ErrorOf([&] { Render(Row(3), open, all); }), "materials.white:0.3: missing");
 }
 
-// A thread that waits for an opener's tasks mustn't take up a tile that waits for the opener. More
-// threads than cores, which then do both at a time.
+// A thread that waits for an opener's tasks must not start a tile, which would wait for the opener.
+// There are more threads than cores, so that both happen at the same time.
 TEST(Skip, OpenersMayWorkInParallel) {
   constexpr int kThreads = 8;
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, kThreads);

@@ -1,4 +1,4 @@
-// Tiles that are called empty are, whatever is where.
+// Tiles that are marked as empty show nothing, in random scenes too.
 #include "tiles.h"
 
 #include <random>
@@ -18,7 +18,7 @@ std::vector<Tile> TilesOf(const Scene& scene) {
   return TilesOf(scene, PinholeCamera(scene.camera, scene.film));
 }
 
-// Rays through all of the empty tiles' pixels meet nothing. Returns the number of empty tiles.
+// Expects that rays through the empty tiles' pixels hit nothing. Returns the number of empty tiles.
 std::size_t ExpectEmptyTilesAre(const Scene& scene) {
   const PinholeCamera camera(scene.camera, scene.film);
   const Geometry geometry(scene);
@@ -81,7 +81,7 @@ TEST(Tiles, EmptyOnesMeetNothing) {
   EXPECT_GT(empty, 200u * 8u);  // of some 64 in each image
 }
 
-// Where single precision is coarse next to the shapes.
+// There, single precision is coarse beside the size of the shapes.
 TEST(Tiles, EmptyOnesMeetNothingFarFromTheOrigin) {
   Things things(4);
   std::size_t empty = 0;

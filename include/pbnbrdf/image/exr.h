@@ -14,7 +14,7 @@ namespace pbnbrdf {
 // parts the first is read. Values come as they are: negative and non-finite ones, too.
 //
 // Throws Error, which names the file, if it is missing, isn't OpenEXR, is truncated or damaged, lacks
-// one of the channels or stores it at a lower resolution, or has more than kMostPixels pixels or sides
+// one of the channels or stores it at a lower resolution, or has more than kMaxPixels pixels or sides
 // or tiles beyond 65536; these are looked at before memory is taken for the image.
 Image ReadExr(const std::string& path);
 

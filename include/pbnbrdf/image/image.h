@@ -6,8 +6,8 @@
 
 namespace pbnbrdf {
 
-// What readers of files take at most: 16384 x 8192 pixels.
-inline constexpr std::size_t kMostPixels = std::size_t(1) << 27;
+// The largest image that is read from a file: an environment map of 16384 x 8192 pixels.
+inline constexpr std::size_t kMaxPixels = std::size_t(1) << 27;
 
 // Linear RGB, height x width x 3, rows from the top.
 struct Image {

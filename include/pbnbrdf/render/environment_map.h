@@ -1,10 +1,9 @@
-// environment_map.h: light from infinitely far away, by direction.
+// environment_map.h: light from infinitely far away, as an image of all directions.
 //
-// A latitude-longitude image: rows are equal steps of theta from +y (the top) to -y, columns equal
-// steps of phi from phi = 0 at the left edge, with the direction (sin theta sin phi, cos theta,
-// -sin theta cos phi): what Mitsuba does. Radiance is constant within a texel, and so is the
-// density that directions are drawn with, per solid angle: their quotient varies by the texels'
-// colours only.
+// A latitude-longitude image: rows are equal steps of theta from +y at the top to -y at the bottom,
+// columns are equal steps of phi from 0 at the left edge, and the direction is
+// (sin theta sin phi, cos theta, -sin theta cos phi), as in Mitsuba. Radiance is constant within a
+// texel, and so is the density, per solid angle, of sampled directions.
 #pragma once
 
 #include <array>
@@ -17,9 +16,9 @@ namespace pbnbrdf {
 
 class EnvironmentMap {
  public:
-  // radiance: W / (m^2 sr), at least one texel; negative values, which resampling leaves, count as
-  // 0. It is multiplied by scale, finite and >= 0, and turned about +y, right-handed, by `rotation`
-  // degrees. Throws Error, with the texel, if a value isn't finite.
+  // radiance: W / (m^2 sr), at least one texel. Negative values, which resampling may leave, count as
+  // 0. rotation: degrees about +y, right-handed. scale: a factor, finite and >= 0. Throws Error, with
+  // the texel, if a value is not finite.
   EnvironmentMap(Image radiance, double rotation, double scale);
 
   // The same radiance from everywhere.
@@ -27,8 +26,8 @@ class EnvironmentMap {
 
   Rgb Radiance(const Vec3& direction) const;
 
-  // A direction, its density per solid angle and its radiance for two uniform numbers in [0, 1).
-  // Texels are drawn by their luminance times their solid angle. Not to be called if IsBlack().
+  // A direction for two uniform numbers in [0, 1), its density per solid angle, and its radiance.
+  // Texels are drawn in proportion to luminance times solid angle. The map must not be black.
   Vec3 Sample(const std::array<double, 2>& u, double* pdf, Rgb* radiance) const;
   double Pdf(const Vec3& direction) const;
 
@@ -41,14 +40,15 @@ class EnvironmentMap {
 
   Texel TexelAt(const Vec3& direction) const;
   Rgb RadianceOf(const Texel& texel) const;
-  double Density(const Texel& texel) const;
+  double PdfOf(const Texel& texel) const;
 
   Image radiance_;   // scaled
   double rotation_;  // radians
   double total_ = 0.0;
   std::vector<double> cos_theta_;  // of the rows' edges, height + 1
-  std::vector<double> rows_;       // weight of the rows up to and including each
-  std::vector<double> columns_;    // of each row's texels, likewise; height x width
+  // Running sums of the texels' weights.
+  std::vector<double> rows_;     // over rows
+  std::vector<double> columns_;  // within each row, height x width
 };
 
 }  // namespace pbnbrdf

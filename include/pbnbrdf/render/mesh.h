@@ -1,4 +1,4 @@
-// mesh.h: triangle meshes and the files that hold them.
+// mesh.h: triangle meshes, and the files that hold them.
 #pragma once
 
 #include <array>
@@ -12,33 +12,29 @@ namespace pbnbrdf {
 
 struct TriangleMesh {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  // one for each position, any length but 0; or none: flat triangles
-  std::vector<std::array<std::uint32_t, 3>>
-      triangles;  // into positions, counterclockwise from outside
+  std::vector<Vec3> normals;  // one for each position, not of unit length; empty: flat triangles
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // positions, counterclockwise from outside
 };
 
-// Wavefront OBJ: v, vn and f lines, faces of three corners or more (as fans), negative indices
-// too; all else (texture coordinates, groups, materials) is left out. Normals are kept if every
-// corner of every face has one; a position with several of them is repeated.
+// Reads one of these; the file's first bytes say which:
 //
-// PLY, ascii or binary_little_endian: x, y, z and, where they all are, nx, ny, nz of "vertex", the
-// list vertex_indices or vertex_index of "face"; other elements and properties are skipped.
+// Wavefront OBJ: v, vn and f lines. Faces of more than three corners become fans of triangles;
+// indices may be negative. All else is ignored: texture coordinates, groups, materials. Normals are
+// kept if each corner of each face has one; a position with several normals is repeated.
 //
-// Both throw Error, which names the file and, of a text, the line, if it is missing, truncated or
-// of another format, has no triangles, an index out of range, or a coordinate that isn't finite or
-// is beyond kLargestCoordinate, or a face without area. The file's first bytes say which format it
-// is.
+// PLY, ascii or binary_little_endian: x, y, z of "vertex", its nx, ny, nz if all three are there, and
+// the list vertex_indices or vertex_index of "face". Other elements and properties are skipped.
+//
+// Throws Error, which names the file and, in a text file, the line: if the file is missing, truncated
+// or of another format, has no triangles, an index out of range, a triangle without area, or a
+// coordinate that is not finite or beyond 1e15.
 TriangleMesh ReadMesh(const std::string& path);
 
-// Embree computes in single precision.
-inline constexpr double kLargestCoordinate = 1e15;
-
-// The mesh as the map places it; turned inside out by a reflection, the triangles change
-// orientation, so that their normals go where the map's do. Its determinant must not be 0.
+// The mesh as the map places it; its determinant must not be 0. If the map reflects, the triangles'
+// corners change their order, so that the outside stays outside.
 TriangleMesh Transformed(const TriangleMesh& mesh, const Affine& map);
 
-// Throws Error "triangle N: ..." if a triangle has no area or a coordinate isn't finite or is too
-// large.
-void CheckTriangles(const TriangleMesh& mesh);
+// Two triangles. x, y: half of its sides; x times y is its normal.
+TriangleMesh ParallelogramMesh(const Vec3& center, const Vec3& x, const Vec3& y);
 
 }  // namespace pbnbrdf

@@ -1,16 +1,16 @@
-// render.h: images of scenes, by path tracing.
+// render.h: renders scenes by path tracing.
 //
-// Paths start at the camera and go where the materials reflect (brdf/importance_sampler.h); at each
-// reflection one light, chosen uniformly, is sampled too. What both find is combined by multiple
-// importance sampling with the power heuristic [1]. All paths of a tile take their next step
-// together, and reflectances are asked for by material, hundreds at once, as networks need it.
-// After a few reflections paths go on with the probability of what they still carry (Russian
-// roulette).
+// At each vertex of a path one light, chosen uniformly, is sampled, and the material's
+// ImportanceSampler draws the path's next direction. Both are combined by multiple importance sampling
+// with the power heuristic [1]. Russian roulette ends paths after a few reflections.
 //
-// What the image doesn't depend on is left out, and counted (work.h): materials that no path gets
-// to, rays through tiles without shapes, and reflectances for directions below the horizon, for
-// lights that are hidden, and for paths that come to nothing: a path is followed to its next place
-// before the material is asked how much arrives from there.
+// The paths of a tile take each step together. BRDF values are requested one material at a time,
+// hundreds at once, which is what makes networks fast.
+//
+// Work that cannot change the image is skipped, and counted (work.h): opening materials that no path
+// hits, rays through tiles without shapes, and BRDF values for directions below the horizon, for
+// hidden lights, and for rays that lead to no light. That is why a ray is traced before the BRDF at its
+// origin is evaluated.
 //
 // [1] E. Veach. Robust Monte Carlo Methods for Light Transport Simulation. Thesis, 1997, section
 // 9.2.
@@ -34,52 +34,53 @@ namespace pbnbrdf {
 
 struct OpenedMaterial {
   std::unique_ptr<Brdf> brdf;  // not null
-  // How directions are chosen; fitted to the Brdf if absent. Materials with the same one send all
-  // paths the same way, until Russian roulette ends some, so that their images can be compared.
+  // The density that directions are drawn with; fitted to the BRDF if absent. Materials with the same
+  // proposal send paths in the same directions, until Russian roulette ends some: their images have
+  // the same noise, and can be compared.
   std::optional<LobeProposal> proposal = {};
 };
 
-// The material that a SceneMaterial's source names; throws Error. Called when the first path gets
-// there, from any thread, but by one at a time.
+// Opens the material that a SceneMaterial's source names; throws Error. Called when the first path hits
+// the material, by any thread, but by one at a time.
 using MaterialOpener = std::function<OpenedMaterial(const std::string& source)>;
 
-// Where the light at a reflection is looked for; the means of the images are the same. Point and
-// directional lights are always sampled, as no other way finds them.
+// Which techniques find light: sampling the BRDF, sampling lights, or both. The images differ in noise
+// only. Point and directional lights are always sampled, as no ray hits them.
 enum class Estimator { kMis, kBrdf, kLight };
 
 inline constexpr NameTable<Estimator, 3> kEstimators = {
     {{"mis", Estimator::kMis}, {"brdf", Estimator::kBrdf}, {"light", Estimator::kLight}}};
 
 struct RenderProgress {
-  double fraction;  // of the samples, those that target_error saves counted as done
+  double fraction;  // of the samples, including those that target_error saves
   double seconds;
 };
 
 struct RenderOptions {
   int samples_per_pixel = 256;  // >= 1, uniform in the pixel
   std::uint64_t seed = 1;
-  int threads = 0;       // 0: one for each core; the image is the same
-  int max_bounces = 64;  // reflections between the camera and a light, 0 to 100,000; 0: lights only
+  int threads = 0;       // 0: one for each core; the image does not depend on it
+  int max_bounces = 64;  // reflections of a path, 0 to 100,000; 0: only lights are visible
   Estimator estimator = Estimator::kMis;
-  // Pixels get no more samples once they are known this well: a block of 4 x 4 pixels (fewer at the
-  // right and the bottom of the image) is finished when each of them has at least 32 samples, and
-  // the standard error of its mean luminance, as its samples estimate it, is below
-  // target_error (mean luminance + 0.01). This is looked at every 16 samples. Finite and >= 0; 0:
-  // never. Stopping by what was found makes pixels slightly too dark: below the error itself.
+  // Adaptive sampling: a block of 4 x 4 pixels gets no more samples when each of its pixels has at
+  // least 32, and a standard error of its mean luminance, estimated from its samples, below
+  // target_error (mean luminance + 0.01). Checked every 16 samples. Finite, >= 0; 0: off. Stopping by
+  // what was sampled makes pixels slightly too dark, by less than the error itself.
   double target_error = 0.0;
-  // Leave out what the image doesn't depend on; false: do it and throw it away, for comparison.
-  // Both give the same bits. Doesn't concern target_error.
+  // Skip work that cannot change the image. false: do it all the same, for comparison: the image
+  // stays the same, bit for bit. target_error is independent of this.
   bool skip = true;
-  // Called after each tile, by one thread at a time; false: stop, and keep the image so far.
+  // Called after each tile, by one thread at a time. If it returns false, Render stops and returns the
+  // image so far.
   std::function<bool(const RenderProgress&)> on_progress = {};
 };
 
 struct RenderSummary {
-  bool stopped = false;
-  std::int64_t samples = 0;          // paths in the image
-  std::int64_t dropped_samples = 0;  // of radiance that isn't finite; not in the image
+  bool stopped = false;              // by on_progress
+  std::int64_t samples = 0;          // in the image
+  std::int64_t dropped_samples = 0;  // whose radiance was not finite; not in the image
   RenderWork work;
-  double seconds = 0.0;  // of Render, opening the materials included
+  double seconds = 0.0;  // of Render, including the opening of materials
 };
 
 struct Rendering {
@@ -91,11 +92,12 @@ struct Rendering {
 // Throws Error "RenderOptions::threads = -1; must be >= 0".
 void ValidateRender(const RenderOptions& options);
 
-// Opens the materials that paths get to, when they do (without `skip` all, first of all), and
-// renders. Throws Error if an option is out of its range or a material can't be opened
-// ("materials.gold: ..."): at the end of the pass over the image in which a path got there, the
-// first of the scene's materials that failed, so that it is always the same one. A material that
-// only rare paths get to may fail late. The same arguments give the same bits.
+// Opens each material when the first path hits it (without `skip` all of them at the start), and
+// renders. The same arguments give the same image, bit for bit.
+//
+// Throws Error if an option is out of its range or a material can't be opened ("materials.gold: ...").
+// The latter at the end of the pass over the image in which a path hit it, for the first such material
+// of the scene. A material that few paths hit may fail late.
 Rendering Render(const Scene& scene, const MaterialOpener& open, const RenderOptions& options = {});
 
 }  // namespace pbnbrdf

@@ -1,5 +1,5 @@
-// scene.h: what there is to see: a camera, shapes, materials and lights. problems/scenes/README.md
-// describes the file. Lengths in any one unit, right-handed coordinates, +y up where that matters.
+// scene.h: a scene to render: camera, shapes, materials and lights, and the file that holds it, which
+// problems/scenes/README.md describes. Lengths are in any one unit; coordinates are right-handed.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace pbnbrdf {
 
 struct Camera {
   Vec3 origin = {0.0, 0.0, 0.0}, target = {0.0, 0.0, -1.0};
-  Vec3 up = {0.0, 1.0, 0.0};    // not along the view
+  Vec3 up = {0.0, 1.0, 0.0};    // not parallel to the view
   double field_of_view = 30.0;  // across the image's width, degrees in (0, 180)
 };
 
@@ -24,24 +24,25 @@ struct Film {
 
 struct SceneMaterial {
   std::string name;
-  std::string source;            // what the caller's MaterialOpener takes (render.h)
-  double scale_to_albedo = 0.0;  // as ScaleToAlbedo (brdf/scaled.h); 0: as it is
+  std::string source;            // for the caller's MaterialOpener (render.h)
+  double scale_to_albedo = 0.0;  // as in ScaleToAlbedo (brdf/scaled.h); 0: not scaled
 };
 
-// Materials reflect on both sides: the normal is the one on the viewer's side.
+// Shapes reflect on both sides: the normal is the one on the viewer's side.
+//
+// The x axis of the material's frame is a tangent, projected on the surface: on a sphere it points
+// east, about the sphere's own y axis.
 struct SphereShape {
-  Affine to_world;  // of the unit sphere about the origin; it may become an ellipsoid
+  Affine to_world;  // of the unit sphere about the origin, which may become an ellipsoid
 };
 
-// tangent: the x axis of the materials' frame is this, projected on the surface; of a sphere, it
-// points to the east, about the sphere's own y axis.
 struct MeshShape {
-  TriangleMesh mesh;  // placed
+  TriangleMesh mesh;  // in world coordinates
   Vec3 tangent = {1.0, 0.0, 0.0};
 };
 
 struct Shape {
-  std::optional<SphereShape> sphere;  // or else
+  std::optional<SphereShape> sphere;  // if absent, the shape is the mesh
   MeshShape mesh;
   int material = 0;
 };
@@ -52,14 +53,14 @@ struct PointLight {
 };
 
 struct DirectionalLight {
-  Vec3 direction;  // in which it travels, of unit length
-  Rgb irradiance;  // W / m^2 on what faces it
+  Vec3 direction;  // in which the light travels, of unit length
+  Rgb irradiance;  // W / m^2, on a surface that faces the light
 };
 
-// A parallelogram that is seen, and emits on the side of its normal, x axis times y axis; the other
-// side is black, and neither reflects.
+// A visible parallelogram. It emits on the side of its normal, x axis times y axis; its back is black.
+// It reflects nothing.
 struct RectangleLight {
-  Vec3 center, x_axis, y_axis;  // half of the sides
+  Vec3 center, x_axis, y_axis;  // the axes are half of the sides
   Rgb radiance;                 // W / (m^2 sr)
 };
 
@@ -74,14 +75,14 @@ struct Scene {
   std::vector<RectangleLight> rectangle_lights;
 };
 
-// What the caller has other ideas about than the file.
+// Replaces parts of a scene file.
 struct SceneChanges {
-  std::string environment = {};                     // an OpenEXR file; "": as the scene says
+  std::string environment = {};  // an OpenEXR file with the environment's radiance; "": no change
   std::map<std::string, std::string> sources = {};  // of materials, by name
 };
 
-// Throws Error "FILE: shapes[2].radius: must be > 0": the file and the place in it; of unknown keys
-// with the nearest that is known.
+// Throws Error "FILE: shapes[2].radius: must be > 0", with the place in the file. For an unknown key it
+// suggests the nearest known one.
 Scene ReadScene(const std::string& path, const SceneChanges& changes = {});
 
 }  // namespace pbnbrdf

@@ -1,9 +1,11 @@
-// work.h: what a render did, and what it left out because the image doesn't depend on it.
+// work.h: counts of the work of a render, and of the work that it skipped because the image does not
+// depend on it.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "pbnbrdf/base/names.h"
 
@@ -11,14 +13,14 @@ namespace pbnbrdf {
 
 enum class SkipReason {
   kUnreferenced,  // no shape has the material
-  kNotReached,    // shapes have it, but no path got there
-  kBelowHorizon,  // the direction is below the surface, or beyond the shading normal's horizon
-  kOccluded,      // something is in front of the light
-  kUnlit,         // no light comes from there, or none that counts: a black texel, the back of a
-                  // rectangle light, a surface behind the last reflection
-  kEmptyTiles,    // no shape or rectangle light can be seen through the camera ray's tile
+  kNotReached,    // shapes have the material, but no path hit them
+  kBelowHorizon,  // the direction is below the surface or below the shading normal's horizon
+  kOccluded,      // something stands in front of the light
+  kUnlit,         // no light that counts comes from there: a black texel, the back of a rectangle
+                  // light, or a surface beyond the last reflection
+  kEmptyTiles,    // the camera ray's tile shows neither a shape nor a rectangle light
   kEnded,         // the path had ended
-  kConverged      // the pixel is known well enough (RenderOptions::target_error)
+  kConverged      // the pixel had reached RenderOptions::target_error
 };
 
 inline constexpr NameTable<SkipReason, 8> kSkipReasons = {
@@ -31,13 +33,13 @@ inline constexpr NameTable<SkipReason, 8> kSkipReasons = {
      {"ended", SkipReason::kEnded},
      {"converged", SkipReason::kConverged}}};
 
-// How often one kind of thing was done. What is skipped is never among what is needed: skipping
-// what there is to skip, done = needed; skipping nothing, done is needed plus what was skipped.
+// Counts of one kind of work. Skipped work is never needed work: if all of it is skipped, done equals
+// needed; if it is done all the same, done is needed plus what would have been skipped.
 struct Work {
   std::int64_t needed = 0;  // the image depends on it
   std::int64_t done = 0;
   std::array<std::int64_t, kSkipReasons.size()> skipped = {};  // by SkipReason
-  double seconds = 0.0;  // that what was done took, summed over threads
+  double seconds = 0.0;  // that the work done took, summed over threads
 
   std::int64_t& Skipped(SkipReason reason) { return skipped[static_cast<std::size_t>(reason)]; }
   std::int64_t Skipped(SkipReason reason) const {
@@ -45,25 +47,33 @@ struct Work {
   }
   std::int64_t AllSkipped() const;
 
-  // What the skipped ones would have taken if each took the mean time of one that was done, of one
-  // thread; nothing if none was done, so that there is no mean.
+  // Seconds of one thread, if what was skipped takes as long on average as what was done. Empty if
+  // none was done.
   std::optional<double> SecondsSavedEstimate() const;
 
   Work& operator+=(const Work& other);
 };
 
 struct RenderWork {
-  Work materials;  // opened, and proposals fitted to them: unreferenced, not_reached
-  Work samples;    // paths: converged
-  // Steps of paths: one for the camera ray and one for each reflection, of a path that goes on.
-  // `ended` counts those that a wavefront without compaction would drag along: paths that have
-  // ended while others of the same call of PathTracer::Trace go on. It is a matter of comparison:
-  // ended paths always leave, with RenderOptions::skip or without, and no time is put down to lanes.
-  Work lanes;
-  Work rays;         // camera, shadow, and reflected: below_horizon and unlit (shadow), empty_tiles
-  Work brdf_values;  // below_horizon, occluded, unlit
+  Work materials;  // opened, and a proposal fitted
+  Work samples;    // paths
+  // Vertices of paths: the camera, and each reflection. kEnded counts the places that ended paths
+  // would keep in a wavefront without compaction. It is for comparison only: ended paths always
+  // leave the wavefront, with RenderOptions::skip on or off. No time is measured.
+  Work path_vertices;
+  Work rays;         // camera rays, shadow rays and reflected rays
+  Work brdf_values;  // f(wi, wo) of one pair of directions
 
   RenderWork& operator+=(const RenderWork& other);
 };
+
+// One kind of work, for loops over all of them.
+struct WorkKind {
+  const char* name;  // the member's name
+  Work RenderWork::*work;
+  std::vector<SkipReason> reasons;  // for which it may be skipped
+};
+
+const std::vector<WorkKind>& WorkKinds();
 
 }  // namespace pbnbrdf
