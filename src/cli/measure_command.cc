@@ -41,15 +41,17 @@ struct OpenedFit {
   std::size_t parameters;  // numbers that it stores
 };
 
-OpenedFit OpenFit(const std::string& path) {
-  if (path.ends_with(".json")) {
-    auto model = std::make_unique<AnalyticBrdf>(AnalyticBrdf::Read(path));
-    const std::size_t parameters = model->parameters().size();
-    return {std::move(model), parameters};
+OpenedFit OpenFit(const std::string& source) {
+  std::unique_ptr<Brdf> brdf = OpenBrdf(source);
+  std::size_t parameters = 0;
+  if (const auto* network = dynamic_cast<const NeuralBrdf*>(brdf.get())) {
+    parameters = network->weights().size();
+  } else if (const auto* model = dynamic_cast<const AnalyticBrdf*>(brdf.get())) {
+    parameters = model->parameters().size();
+  } else {
+    Fail(source, ": neither a fitted network nor an analytic model");
   }
-  auto network = std::make_unique<NeuralBrdf>(OpenNetwork(path));
-  const std::size_t parameters = network->weights().size();
-  return {std::move(network), parameters};
+  return {std::move(brdf), parameters};
 }
 
 int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {

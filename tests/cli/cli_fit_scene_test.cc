@@ -85,7 +85,8 @@ TEST_F(CliFitScene, RecordsWhatWasFitted) {
                             "--terms=log --out_dir=" + Path("fits"));
   ASSERT_EQ(result.status, 0) << result.err;
   std::map<std::string, std::string> problems;
-  for (const json& fit : Summary("fits")["fits"]) {
+  const json summary = Summary("fits");
+  for (const json& fit : summary["fits"]) {
     if (fit.contains("problem")) problems[fit["material"]] = fit["problem"];
   }
   ASSERT_EQ(problems.size(), 3u);

@@ -104,6 +104,8 @@ TEST_F(CliSources, ModelMistakesAreNamed) {
   WriteBytes(Path("bad.json"), "{}");
   ExpectError("measure --material=builtin:blue-plastic --fit=" + Path("bad.json"), 1,
               "bad.json: not an analytic model");
+  ExpectError("measure --material=builtin:blue-plastic --fit=builtin:blue-plastic", 1,
+              "builtin:blue-plastic: neither a fitted network nor an analytic model");
 }
 
 TEST_F(CliSources, ANetworkIsAMaterialToo) {
