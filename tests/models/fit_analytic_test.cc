@@ -143,7 +143,6 @@ TEST(FitAnalytic, OptionsAreChecked) {
   EXPECT_EQ(error([](AnalyticFitOptions*) {}), "");
   EXPECT_EQ(error([](auto* o) { o->lobes = 3; }), "lobes = 3; must be 1 to 2");
   EXPECT_EQ(error([](auto* o) { o->loss_scale = 0.0; }), "loss_scale = 0; must be finite and > 0");
-  EXPECT_EQ(error([](auto* o) { o->samples = 0; }), "samples = 0; must be >= 1");
   EXPECT_EQ(error([](auto* o) { o->first_samples = 0; }), "first_samples = 0; must be >= 1");
   EXPECT_EQ(error([](auto* o) { o->starts = 0; }), "starts = 0; must be >= 1");
   EXPECT_EQ(error([](auto* o) { o->max_iterations = 0; }), "max_iterations = 0; must be >= 1");
