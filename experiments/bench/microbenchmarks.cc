@@ -11,10 +11,10 @@
 
 #include "flops.h"
 #include "jacobian_methods.h"
-#include "kernels/evaluation.h"
 #include "kernels/kernels.h"
 #include "matrix_product.h"
 #include "network/batched_mlp.h"
+#include "network/evaluation.h"
 #include "network/fast_neural_brdf.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -264,7 +264,7 @@ void BM_EncodeBatch(benchmark::State& state) {
   const std::vector<DirectionPair> pairs = Pairs(kernels::kBatch);
   AlignedVector<float> inputs(kEncodedSize * kernels::kBatch);
   for (auto _ : state) {
-    kernels::EncodeMultiscale(&pairs[0].wi.x, inputs.data());
+    EncodeBatch(Encoding::kMultiscale, pairs.data(), inputs.data());
     benchmark::DoNotOptimize(inputs.data());
     benchmark::ClobberMemory();
   }

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "brdf/merl_rows.h"
+#include "pbnbrdf/brdf/merl_rows.h"
 
 namespace pbnbrdf {
 namespace {

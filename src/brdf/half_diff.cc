@@ -14,27 +14,12 @@ double Azimuth(double y, double x) {
   return turned < kTwoPi ? turned : 0.0;
 }
 
-// The tangents of the frame of h: along growing theta_h and along growing phi_h.
-struct Tangents {
-  Vec3 theta, phi;
-};
-
-Tangents TangentsAt(double sin_theta, double cos_theta, double sin_phi, double cos_phi) {
-  return {{cos_theta * cos_phi, cos_theta * sin_phi, -sin_theta}, {-sin_phi, cos_phi, 0.0}};
-}
-
 }  // namespace
 
 HalfDiff ToHalfDiff(const DirectionPair& pair) {
-  const Vec3 sum = pair.wi + pair.wo;
-  const Vec3 difference = 0.5 * (pair.wi - pair.wo);
-  const double length = Length(sum);
-  const Vec3 h = length > 0.0 ? (1.0 / length) * sum : Vec3{0.0, 0.0, 1.0};
-  const double sin_theta = std::hypot(h.x, h.y);
-  const double cos_phi = sin_theta > 0.0 ? h.x / sin_theta : 1.0;
-  const double sin_phi = sin_theta > 0.0 ? h.y / sin_theta : 0.0;
-  const Tangents t = TangentsAt(sin_theta, h.z, sin_phi, cos_phi);
-  return {h, {Dot(difference, t.theta), Dot(difference, t.phi), 0.5 * length}};
+  const auto& [wi, wo] = pair;
+  const auto v = HalfDiffOfPair<double>({wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z});
+  return {{v.hx, v.hy, v.cos_theta}, {v.dx, v.dy, v.dz}};
 }
 
 RusinkiewiczAngles ToAngles(const DirectionPair& pair) {
@@ -48,10 +33,12 @@ RusinkiewiczAngles ToAngles(const DirectionPair& pair) {
 DirectionPair FromAngles(const RusinkiewiczAngles& angles) {
   const Vec3 h = FromSpherical(angles.theta_h, angles.phi_h);
   const Vec3 d = FromSpherical(angles.theta_d, angles.phi_d);
-  const Tangents t =
-      TangentsAt(std::sin(angles.theta_h), h.z, std::sin(angles.phi_h), std::cos(angles.phi_h));
+  const double sin_theta = std::sin(angles.theta_h), cos_phi = std::cos(angles.phi_h);
+  const double sin_phi = std::sin(angles.phi_h);
+  const Vec3 along_theta = {h.z * cos_phi, h.z * sin_phi, -sin_theta};
+  const Vec3 along_phi = {-sin_phi, cos_phi, 0.0};
   const Vec3 along = d.z * h;
-  const Vec3 across = d.x * t.theta + d.y * t.phi;
+  const Vec3 across = d.x * along_theta + d.y * along_phi;
   return {along + across, along - across};
 }
 

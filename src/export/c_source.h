@@ -12,8 +12,8 @@ namespace pbnbrdf {
 //   void NAME_eval(const float wi[3], const float wo[3], float rgb[3]);
 //
 // wi points to the light, wo to the viewer: unit vectors, normal +z. rgb: linear, 1/sr, without the
-// cosine; 0 where a direction isn't above the horizon. Computed in double precision, so that it is
-// the value of NeuralBrdf at these very directions, rounded to float. Of a reciprocal encoding the
+// cosine; 0 where a direction isn't above the horizon. Computed in double precision: it is
+// the value of NeuralBrdf at the same directions, rounded to float. Of a reciprocal encoding the
 // value has the same bits if wi and wo are exchanged, with or without contraction to fused
 // multiply-adds (but not with -ffast-math, where compilers promise nothing).
 //

@@ -1,17 +1,20 @@
 #include "export/mitsuba_plugin.h"
 
 #include "base/text.h"
+#include "export/code.h"
+#include "export/source_text.h"
 #include "mitsuba_plugin_text.h"
-#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/network/mlp.h"
 
 namespace pbnbrdf {
 namespace {
 
-void ReplaceLine(std::string* text, std::string_view line, const std::string& by) {
-  const std::size_t at = text->find(line);
-  if (at == std::string::npos) Fail("the plugin's text has no line ", line);
-  text->replace(at, line.size(), by);
-}
+constexpr Language kPython = {
+    .statement = "    $ = $\n",
+    .component = {".x", ".y", ".z"},
+    .single_precision = false,
+    .functions = {"dr.maximum($, $)", "dr.minimum($, $)", "dr.atan2($, $)", "dr.sqrt($)",
+                  "dr.log($)", "dr.floor($)", "dr.tanh($)", "expm1($)", "dr.select($ > $, $, $)"}};
 
 // A bytes literal of Python: whatever bytes a file's name has.
 std::string BytesLiteral(const std::string& bytes) {
@@ -27,19 +30,35 @@ std::string BytesLiteral(const std::string& bytes) {
   return "b\"" + literal + "\"";
 }
 
+// A function of wi and wo that gives the list of inputs.
+std::string Encoder(std::string_view name, Encoding encoding) {
+  const auto [statements, values] = PrintInputs(kPython, encoding);
+  return StrCat("def ", name, "(wi, wo):\n", statements, "    return [", ListText(values),
+                "]\n\n\n");
+}
+
 }  // namespace
 
 std::string MitsubaPlugin(const std::string& network, const LobeProposal& proposal) {
-  std::string text = kMitsubaPluginText;
-  const auto set_number = [&](const std::string& name, double value) {
-    ReplaceLine(&text, StrCat("\n", name, " = 0.5\n"),
-                StrCat("\n", name, " = ", FormatNumber(value), "\n"));
-  };
-  ReplaceLine(&text, "b\"network.safetensors\"", BytesLiteral(network));
-  set_number("ALPHA_U", proposal.alpha.x);
-  set_number("ALPHA_V", proposal.alpha.y);
-  set_number("LOBE_WEIGHT", proposal.lobe_weight);
-  return text;
+  std::string encoders, encodings, activations;
+  for (const auto& [name, encoding] : kEncodings) {
+    encoders += Encoder(name, encoding);
+    encodings += StrCat("\n    \"", name, "\": (", name, ", ",
+                        IsIsotropic(encoding) ? "True" : "False", "),");
+  }
+  for (const auto& [name, activation] : kActivations) {
+    activations += StrCat("\n    \"", name, "\": lambda x: ",
+                          PrintExpression(kPython, Activate(activation, Term::Variable("x"))), ",");
+  }
+  return FillIn(kMitsubaPluginText,
+                {{"network", BytesLiteral(network)},
+                 {"alpha_u", FormatNumber(proposal.alpha.x)},
+                 {"alpha_v", FormatNumber(proposal.alpha.y)},
+                 {"lobe_weight", FormatNumber(proposal.lobe_weight)},
+                 {"reflectance", PrintExpression(kPython, ClampedReflectance(Term::Variable("z")))},
+                 {"encoders", encoders},
+                 {"encodings", encodings},
+                 {"activations", activations}});
 }
 
 }  // namespace pbnbrdf

@@ -9,13 +9,14 @@ Parameters, all optional:
     filename          a .safetensors file of pbnbrdf instead of the one beside this file
     alpha_u, alpha_v  roughness of the GGX lobe that directions are drawn from, along x and y, from
                       0.0001 to 1
-    lobe_weight       how much of the draws it gets, 0 to 1; the rest is cosine distributed
+    lobe_weight       fraction of the samples drawn from the lobe, 0 to 1; the rest is drawn with a
+                      density proportional to the cosine
 
-The last three are set for the network beside this file; others make another's image noisier, not
-wrong.
-Reflects on the side of the normal only: wrap it in "twosided" for both. RGB and monochromatic
-modes. eval() includes the cosine, as Mitsuba has it.
-LLVM variants need LLVM 16 or later: of an arc tangent 15 makes no machine code for AVX-512.
+The defaults of the last three suit the network beside this file. For another network they are still
+correct, but the image may be noisier.
+The material reflects on the side of the normal only: wrap it in "twosided" for both sides. It works in
+RGB and monochromatic modes. eval() includes the cosine, as in all of Mitsuba.
+LLVM variants need LLVM 16 or later: LLVM 15 cannot compile an arc tangent for AVX-512.
 """
 import array
 import json
@@ -26,12 +27,10 @@ import sys
 import drjit as dr
 import mitsuba as mi
 
-NETWORK = os.fsdecode(b"network.safetensors")
-ALPHA_U = 0.5
-ALPHA_V = 0.5
-LOBE_WEIGHT = 0.5
-
-LARGEST_VALUE = 1e12  # 1/sr; narrower lobes than any measurement resolves
+NETWORK = os.fsdecode(@network@)
+ALPHA_U = @alpha_u@
+ALPHA_V = @alpha_v@
+LOBE_WEIGHT = @lobe_weight@
 
 
 def read_safetensors(path):
@@ -61,10 +60,8 @@ class Network:
         metadata, tensors = read_safetensors(path)
         if metadata.get("format") != "pbnbrdf" or metadata.get("output") != "expm1":
             raise ValueError(f"{path}: not a network of pbnbrdf")
-        self.encoding = metadata["encoding"]
-        self.encode = ENCODERS[self.encoding]
-        activations = {"tanh": dr.tanh, "relu": lambda x: dr.maximum(x, 0.0)}
-        self.activate = activations[metadata["activation"]]
+        self.encode, self.is_isotropic = ENCODINGS[metadata["encoding"]]
+        self.activate = ACTIVATIONS[metadata["activation"]]
         self.layers = []  # lists of (row of W, bias)
         while f"fc{len(self.layers) + 1}.weight" in tensors:
             name = f"fc{len(self.layers) + 1}"
@@ -75,7 +72,7 @@ class Network:
 
     def __call__(self, wi, wo):
         """Linear RGB in 1/sr. wi to the light, wo to the viewer, both above the horizon."""
-        x = self.encode(HalfDiff(wi, wo))
+        x = self.encode(wi, wo)
         for number, layer in enumerate(self.layers):
             y = []
             for row, bias in layer:
@@ -87,81 +84,19 @@ class Network:
         return mi.Color3f(*[reflectance(z) for z in x])
 
 
+def expm1(x):
+    """exp(x) - 1 as 2 sinh(x/2) exp(x/2): no digits are lost near 0."""
+    return 2.0 * dr.sinh(0.5 * x) * dr.exp(0.5 * x)
+
+
 def reflectance(z):
-    """expm1(z), as 2 sinh(z/2) exp(z/2): no digits are lost near 0."""
-    half = dr.select(z > 0.0, 0.5 * dr.minimum(z, 60.0), 0.0)
-    return dr.minimum(2.0 * dr.sinh(half) * dr.exp(half), LARGEST_VALUE)
+    return @reflectance@
 
 
-class HalfDiff:
-    """The half vector and the difference vector in its frame (Rusinkiewicz 1998)."""
-
-    def __init__(self, wi, wo):
-        total, half = wi + wo, 0.5 * (wi - wo)
-        squared = total.x * total.x + total.y * total.y
-        tangential, length = dr.sqrt(squared), dr.sqrt(squared + total.z * total.z)
-        off_pole = tangential > 1e-18
-        per_tangential, per_length = dr.maximum(tangential, 1e-18), dr.maximum(length, 1e-18)
-        self.cos_phi = dr.select(off_pole, total.x / per_tangential, 1.0)
-        self.sin_phi = dr.select(off_pole, total.y / per_tangential, 0.0)
-        self.sin_h, self.cos_h = tangential / per_length, total.z / per_length
-        self.theta_h = dr.atan2(tangential, total.z)
-        radial = half.x * self.cos_phi + half.y * self.sin_phi
-        self.dx = radial * self.cos_h - half.z * self.sin_h
-        self.dy = half.y * self.cos_phi - half.x * self.sin_phi
-        self.dz = 0.5 * length
-
-
-def doubled(x, y):
-    return x * x - y * y, 2.0 * x * y
-
-
-def scales(v):
-    """theta_h on two scales."""
-    return dr.sqrt(v.theta_h * (2.0 / dr.pi)), dr.log(v.theta_h + 1e-3) / 3.0
-
-
-def row_bend(root):
-    row = 90.0 * root
-    u = row - dr.floor(row)
-    return 4.0 * u * (1.0 - u)
-
-
-def cartesian(v):
-    return [v.sin_h, 0.0, v.cos_h, v.dx, v.dy, v.dz]
-
-
-def reciprocal(v):
-    x, y = doubled(v.dx, v.dy)
-    s = dr.maximum(dr.sqrt(v.dx * v.dx + v.dy * v.dy), 1e-18)
-    return [v.sin_h, 0.0, v.cos_h, x / s, y / s, v.dz]
-
-
-def multiscale(v):
-    root, log = scales(v)
-    return [v.sin_h, root, log, *doubled(v.dx, v.dy), v.dz]
-
-
-def merl(v):
-    root, log = scales(v)
-    return [row_bend(root), root, log, *doubled(v.dx, v.dy), v.dz]
-
-
-def bilateral(v):
-    root, log = scales(v)
-    return [row_bend(root), root, log, doubled(v.dx, v.dy)[0], v.sin_h, v.dz]
-
-
-def anisotropic(v):
-    root, log = scales(v)
-    r = root * dr.sqrt(root)
-    tx = v.dx * v.cos_phi - v.dy * v.sin_phi
-    ty = v.dx * v.sin_phi + v.dy * v.cos_phi
-    return [r * v.cos_phi, r * v.sin_phi, log, *doubled(tx, ty), v.dz]
-
-
-ENCODERS = {"cartesian": cartesian, "reciprocal": reciprocal, "multiscale": multiscale,
-            "merl": merl, "bilateral": bilateral, "anisotropic": anisotropic}
+@encoders@
+# The function of each encoding, and whether it makes networks isotropic.
+ENCODINGS = {@encodings@}
+ACTIVATIONS = {@activations@}
 
 
 class NeuralBSDF(mi.BSDF):
@@ -183,7 +118,7 @@ class NeuralBSDF(mi.BSDF):
             raise ValueError("pbnbrdf: lobe_weight must be 0 to 1")
         # The lobe serves to draw directions only; the material is one component.
         flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
-        if self.network.encoding == "anisotropic":
+        if not self.network.is_isotropic:
             flags |= mi.BSDFFlags.Anisotropic
         self.m_components = [flags]
         self.m_flags = flags

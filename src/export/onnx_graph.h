@@ -1,4 +1,4 @@
-// onnx_graph.h: an ONNX graph in the making. Values are float32 tensors known by their names.
+// onnx_graph.h: builds an ONNX graph. Values are float32 tensors known by their names.
 #pragma once
 
 #include <cstdint>

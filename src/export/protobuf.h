@@ -9,7 +9,7 @@
 
 namespace pbnbrdf {
 
-// A message in the making: fields in the order in which they are added.
+// Builds a message; fields are in the order in which they are added.
 class ProtobufMessage {
  public:
   // int32, int64, enum; not negative.

@@ -27,27 +27,27 @@ std::string Literal(float value) {
   return WithPoint(std::string(buffer, result.ptr));
 }
 
-void CheckIdentifier(const std::string& name) {
-  constexpr std::size_t kLongest = 64;
-  const bool fits =
-      !name.empty() && name.size() <= kLongest && IsLetter(name[0]) &&
-      std::all_of(name.begin(), name.end(), [](char c) { return IsLetter(c) || IsDigit(c); });
-  if (!fits) {
-    Fail("name=", name, " is not a letter and at most ", kLongest - 1,
-         " letters, digits or underscores");
-  }
+std::string ListText(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
 }
 
-std::string WithName(std::string_view text, const std::string& name) {
-  std::string result;
-  for (char c : text) {
-    if (c == '@') {
-      result += name;
-    } else {
-      result += c;
-    }
+float SinglePrecision(double weight) {
+  const float rounded = static_cast<float>(weight);
+  if (!std::isfinite(rounded)) Fail("weight ", weight, " is beyond single precision");
+  return rounded;
+}
+
+void CheckIdentifier(const std::string& name) {
+  constexpr std::size_t kMaxLength = 64;
+  const bool fits =
+      !name.empty() && name.size() <= kMaxLength && IsLetter(name[0]) &&
+      std::all_of(name.begin(), name.end(), [](char c) { return IsLetter(c) || IsDigit(c); });
+  if (!fits) {
+    Fail("name=", name, " is not a letter and at most ", kMaxLength - 1,
+         " letters, digits or underscores");
   }
-  return result;
 }
 
 std::string CommentText(const NeuralBrdf& network) {
@@ -60,20 +60,19 @@ std::string CommentText(const NeuralBrdf& network) {
   return text;
 }
 
-std::string EncoderText(Encoding encoding, const EncoderTexts& texts) {
-  const std::string_view inputs = texts.inputs[static_cast<std::size_t>(encoding)];
-  if (encoding == Encoding::kCartesian || encoding == Encoding::kReciprocal) {
-    return StrCat(texts.half_diff, inputs);
+std::string FillIn(std::string_view text,
+                   const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string result;
+  for (std::size_t at; (at = text.find('@')) != std::string_view::npos;) {
+    const std::string_view key = text.substr(at + 1, text.find('@', at + 1) - at - 1);
+    const auto found = std::find_if(values.begin(), values.end(),
+                                    [&](const auto& value) { return value.first == key; });
+    const bool known = found != values.end();
+    result += text.substr(0, known ? at : at + 1);
+    if (known) result += found->second;
+    text.remove_prefix(known ? at + key.size() + 2 : at + 1);
   }
-  const bool has_rows = encoding == Encoding::kMerl || encoding == Encoding::kBilateral;
-  return StrCat(texts.elementary, texts.half_diff, texts.theta_h, has_rows ? texts.row_bend : "",
-                inputs);
-}
-
-float SinglePrecision(double weight) {
-  const float rounded = static_cast<float>(weight);
-  if (!std::isfinite(rounded)) Fail("weight ", weight, " is beyond single precision");
-  return rounded;
+  return result += text;
 }
 
 }  // namespace pbnbrdf

@@ -19,7 +19,7 @@ HWY_INLINE void AdamStepOf(std::size_t count, const T* gradient, T rate, T beta1
                            T epsilon, T* mean, T* square, T* x) {
   const hn::ScalableTag<T> d;
   const auto b1 = hn::Set(d, beta1), b2 = hn::Set(d, beta2);
-  // Those of a dead unit would decay to subnormal numbers, which are slow, and stay there.
+  // The moments of a dead unit would decay to subnormal numbers, which are slow.
   const auto without_tiny = [&](auto value) {
     return hn::IfThenElseZero(hn::Gt(hn::Abs(value), hn::Set(d, T(1e-35))), value);
   };

@@ -7,7 +7,7 @@
 
 namespace pbnbrdf::kernels {
 
-// A step of Adam without its corrections of bias, which are the caller's:
+// A step of Adam. The caller corrects the bias of mean and square, through rate and epsilon:
 //   mean = beta1 mean + (1 - beta1) g,  square = beta2 square + (1 - beta2) g^2,
 //   x -= rate mean / (sqrt(square) + epsilon).
 // A mean or square below 1e-35 becomes 0. count: a multiple of kPad.

@@ -1,5 +1,5 @@
 // float_math-inl.h: elementary functions of vectors of float, cheaper than those of
-// hwy/contrib/math. Included once for each instruction set, behind foreach_target.h.
+// hwy/contrib/math. Included once for each instruction set, after foreach_target.h.
 
 // Highway's own form of #pragma once for such files.
 #if defined(PBNBRDF_FLOAT_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include "minimax.h"
 #include "tanh_table.h"
 #include "target-inl.h"
 
@@ -62,9 +63,9 @@ HWY_INLINE hn::Vec512<float> LookUp(const float* values, hn::Vec512<std::int32_t
 template <class D, class V>
 HWY_INLINE V FastTanh(D d, V x) {
   constexpr float kRound = 12582912.0f;  // the last bit of 1.5 * 2^23 is worth 1
-  constexpr float kLargest = (kTanhIntervals - 0.55f) * kTanhWidth;
-  // The second operand is the one that x86 returns if it is NaN.
-  const V size = hn::Min(hn::Set(d, kLargest), hn::Abs(x));
+  constexpr float kMaxArgument = (kTanhIntervals - 0.55f) * kTanhWidth;
+  // x86 returns the second operand where one is NaN.
+  const V size = hn::Min(hn::Set(d, kMaxArgument), hn::Abs(x));
   const V interval = hn::MulAdd(size, hn::Set(d, 1.0f / kTanhWidth), hn::Set(d, kRound));
   const auto index = hn::BitCast(hn::RebindToSigned<D>(), interval);
   const V r = hn::NegMulAdd(hn::Sub(interval, hn::Set(d, kRound)), hn::Set(d, kTanhWidth), size);
@@ -74,14 +75,14 @@ HWY_INLINE V FastTanh(D d, V x) {
 }
 #else
 // Absolute error below 4e-7; odd, within [-1, 1], NaN for NaN. A minimax fit of x P(x^2) / Q(x^2) for
-// |x| < kLargest; behind that x^2 stays and the ratio, which grows with x, is cut.
+// |x| < kMaxArgument; for larger |x| x^2 is clamped, and the ratio is clamped to 1.
 template <class D, class V>
 HWY_INLINE V FastTanh(D d, V x) {
-  constexpr float kLargest = 8.5f;
+  constexpr float kMaxArgument = 8.5f;
   constexpr float kP[] = {0.999999948f, 0.13406565f, 0.00352623816f, 2.11281991e-05f,
                           1.41079876e-08f};
   constexpr float kQ[] = {1.0f, 0.467398769f, 0.0259927478f, 0.00033363636f, 8.07728786e-07f};
-  const V x2 = hn::Min(hn::Set(d, kLargest * kLargest), hn::Mul(x, x));
+  const V x2 = hn::Min(hn::Set(d, kMaxArgument * kMaxArgument), hn::Mul(x, x));
   const V p = hn::Mul(x, Polynomial(d, x2, kP));
   const V q = Polynomial(d, x2, kQ);
   const V ratio = hn::Div(p, q);
@@ -93,13 +94,10 @@ HWY_INLINE V FastTanh(D d, V x) {
 // expm1(x) for 0 <= x < 88, relative error below 4e-7: 2^n (1 + expm1(r)) - 1 with x = n log 2 + r.
 template <class D, class V>
 HWY_INLINE V FastExpm1(D d, V x) {
-  constexpr float kPerLog2 = 1.44269504f, kLog2High = 0.693359375f, kLog2Low = -2.12194440e-4f;
-  constexpr float kP[] = {0.499999982f, 0.166665437f, 0.0416671996f, 0.00836651394f,
-                          0.00138825227f};  // (expm1(r) - r) / r^2, minimax for |r| < log(2) / 2
   const hn::RebindToSigned<D> di;
   const V n = hn::Round(hn::Mul(x, hn::Set(d, kPerLog2)));
   const V r = hn::NegMulAdd(n, hn::Set(d, kLog2Low), hn::NegMulAdd(n, hn::Set(d, kLog2High), x));
-  const V p = hn::MulAdd(hn::Mul(r, r), Polynomial(d, r, kP), r);
+  const V p = hn::MulAdd(hn::Mul(r, r), Polynomial(d, r, kExpm1Polynomial), r);
   const auto exponent = hn::Add(hn::ConvertTo(di, n), hn::Set(di, 127));
   const V scale = hn::BitCast(d, hn::ShiftLeft<23>(exponent));  // 2^n
   return hn::MulAdd(scale, p, hn::Sub(scale, hn::Set(d, 1.0f)));
@@ -110,11 +108,8 @@ HWY_INLINE V FastExpm1(D d, V x) {
 template <class D, class V>
 HWY_INLINE V AngleOf(D d, V sine, V cosine) {
   constexpr float kPi = 3.14159265f;
-  // 2 atan(t) / t, minimax for 0 <= t <= 1, in t^2.
-  constexpr float kP[] = {1.999999972f,  -0.66666188f,  0.399861058f,   -0.284142672f, 0.213093548f,
-                          -0.150673521f, 0.0860787358f, -0.0325660162f, 0.0058071051f};
   const V t = hn::Mul(sine, Reciprocal(d, hn::Add(hn::Set(d, 1.0f), hn::Abs(cosine))));
-  const V acute = hn::Mul(t, Polynomial(d, hn::Mul(t, t), kP));
+  const V acute = hn::Mul(t, Polynomial(d, hn::Mul(t, t), kTwoAtanPolynomial));
   return hn::IfThenElse(hn::Lt(cosine, hn::Zero(d)), hn::Sub(hn::Set(d, kPi), acute), acute);
 }
 

@@ -1,7 +1,6 @@
-// kernels.h: what the kernels share. These are the inner loops, for batches of kBatch samples, in
-// single and double precision: passes.h, products.h, losses.h, adam_step.h, evaluation.h. Each is
-// compiled for several instruction sets, and the best one that the processor has is chosen when it
-// is called. T is float or double.
+// kernels.h: what the kernels share. Kernels are the inner loops, for batches of kBatch samples:
+// passes.h, products.h, losses.h, adam_step.h. Each is compiled for several instruction sets; a call
+// runs the best one that the processor has. T is float or double.
 //
 // Two layouts: by feature, x[i * kBatch + n], for passes through a network; by sample,
 // x[n * stride + i], for sums over samples. Strides are in elements.

@@ -50,14 +50,14 @@ HWY_INLINE V Sign(V x) {
   return hn::CopySign(magnitude, x);
 }
 
-// exp(z). Beyond 40, where no reflectance lies, gradients have come to their limits and f^ would
-// overflow.
+// exp(z), z at most 40. No reflectance is larger, gradients have reached their limits there, and f^ doesn't
+// overflow yet.
 HWY_INLINE V GrownAt(const float* z) {
   const F d;
   return hn::Exp(d, hn::Min(hn::Set(d, 40.0f), hn::LoadU(d, z)));
 }
 
-// |log1p(a) - log1p(b)| falls and rises with a as |a - b| does: no logarithm is needed below.
+// The sign of log1p(a) - log1p(b) is that of a - b: the gradients below need no logarithm.
 
 void VectorLogGradient(const float* z, const float* cos_i, const float* f, float weight,
                        float* gradient) {

@@ -7,8 +7,8 @@ namespace pbnbrdf::kernels {
 
 // The log term (eq. 6) and its derivative: with u_c = expm1(z_c) cos_i,
 //   residuals_c = targets_c - log1p(u_c),  slopes_c = d residuals_c / d z_c.
-// By feature, 3 x kBatch; cos_i kBatch. Residuals aren't finite where z isn't, nor
-// where it is above 706 and cos_i < 1.
+// By feature, 3 x kBatch; cos_i kBatch. A residual is not finite where z is not, or
+// where z is above 706 and cos_i < 1.
 void LogResiduals(const double* z, const double* targets, const double* cos_i, double* residuals,
                   double* slopes);
 
@@ -17,8 +17,8 @@ void LogResiduals(const double* z, const double* targets, const double* cos_i, d
 //   sum_c |log1p(f_c cos_i) - log1p(f^_c cos_i)|        (eq. 6),
 //   |log1p(|f cos_i|^2) - log1p(|f^ cos_i|^2)|          (eq. 7),   f^_c = expm1(z_c),
 //
-// 0 where cos_i = 0, and where z_c > 40 what it is at 40. By feature: z, f and gradient 3 x kBatch,
-// cos_i kBatch, in [0, 1].
+// 0 where cos_i = 0; z_c above 40 counts as 40. By feature: z, f and gradient 3 x kBatch, cos_i kBatch,
+// in [0, 1].
 void AddAbsoluteLogGradient(const float* z, const float* cos_i, const float* f, float weight,
                             float* gradient);
 void AddAbsoluteChromaticityGradient(const float* z, const float* cos_i, const float* f,

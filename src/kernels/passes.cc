@@ -37,6 +37,13 @@ struct TanhOf {
   }
 };
 
+struct ReluOf {
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V x) const {
+    return hn::Max(hn::Zero(d), x);  // keeps a NaN
+  }
+};
+
 // kRows outputs; W is read as w[o * stride_o + i * stride_i].
 template <int kRows, bool kBias, class Activation, typename T>
 HWY_INLINE void DenseBlock(const T* w, int stride_o, int stride_i, int in, const T* x, T* y) {
@@ -64,14 +71,14 @@ HWY_INLINE void DenseBlock(const T* w, int stride_o, int stride_i, int in, const
   }
 }
 
-// DenseBlock<rows>, 1 <= rows <= kMostRows.
-template <int kMostRows, bool kBias, class Activation, typename T>
+// DenseBlock<rows>, 1 <= rows <= kMaxRows.
+template <int kMaxRows, bool kBias, class Activation, typename T>
 HWY_INLINE void DenseRows(int rows, const T* w, int stride_o, int stride_i, int in, const T* x,
                           T* y) {
-  if (rows == kMostRows) {
-    DenseBlock<kMostRows, kBias, Activation>(w, stride_o, stride_i, in, x, y);
-  } else if constexpr (kMostRows > 1) {
-    DenseRows<kMostRows - 1, kBias, Activation>(rows, w, stride_o, stride_i, in, x, y);
+  if (rows == kMaxRows) {
+    DenseBlock<kMaxRows, kBias, Activation>(w, stride_o, stride_i, in, x, y);
+  } else if constexpr (kMaxRows > 1) {
+    DenseRows<kMaxRows - 1, kBias, Activation>(rows, w, stride_o, stride_i, in, x, y);
   }
 }
 
@@ -88,26 +95,10 @@ HWY_INLINE void DenseBlocks(const T* w, int stride_o, int stride_i, int out, int
 }
 
 template <typename T>
-HWY_INLINE void TanhAll(T* x, std::size_t count) {
-  const hn::ScalableTag<T> d;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    hn::StoreU(TanhOf()(d, hn::LoadU(d, x + i)), d, x + i);
-  }
-}
-
-template <typename T>
 HWY_INLINE void ExpAll(T* x, std::size_t count) {
   const hn::ScalableTag<T> d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     hn::StoreU(hn::Exp(d, hn::LoadU(d, x + i)), d, x + i);
-  }
-}
-
-template <typename T>
-HWY_INLINE void ReluAll(T* x, std::size_t count) {
-  const hn::ScalableTag<T> d;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    hn::StoreU(hn::Max(hn::Zero(d), hn::LoadU(d, x + i)), d, x + i);  // keeps a NaN
   }
 }
 
@@ -128,12 +119,13 @@ HWY_INLINE void ReluSlopesAll(const T* y, std::size_t count, T* delta) {
   void DenseTanh##Suffix(const T* layer, int out, int in, const T* x, T* y) {       \
     DenseBlocks<true, TanhOf>(layer, in + 1, 1, out, in, x, y);                     \
   }                                                                                 \
+  void DenseRelu##Suffix(const T* layer, int out, int in, const T* x, T* y) {       \
+    DenseBlocks<true, ReluOf>(layer, in + 1, 1, out, in, x, y);                     \
+  }                                                                                 \
   void DenseTransposed##Suffix(const T* layer, int out, int in, const T* y, T* x) { \
     DenseBlocks<false, Linear>(layer, 1, in + 1, in, out, y, x);                    \
   }                                                                                 \
-  void Tanh##Suffix(T* x, std::size_t count) { TanhAll(x, count); }                 \
   void Exp##Suffix(T* x, std::size_t count) { ExpAll(x, count); }                   \
-  void Relu##Suffix(T* x, std::size_t count) { ReluAll(x, count); }                 \
   void ReluSlopes##Suffix(const T* y, std::size_t count, T* delta) {                \
     ReluSlopesAll(y, count, delta);                                                 \
   }
@@ -152,10 +144,9 @@ namespace pbnbrdf::kernels {
 #define PBNBRDF_DISPATCH(T, Suffix)                                         \
   HWY_EXPORT(Dense##Suffix);                                                \
   HWY_EXPORT(DenseTanh##Suffix);                                            \
+  HWY_EXPORT(DenseRelu##Suffix);                                            \
   HWY_EXPORT(DenseTransposed##Suffix);                                      \
-  HWY_EXPORT(Tanh##Suffix);                                                 \
   HWY_EXPORT(Exp##Suffix);                                                  \
-  HWY_EXPORT(Relu##Suffix);                                                 \
   HWY_EXPORT(ReluSlopes##Suffix);                                           \
   template <>                                                               \
   void Dense(const T* layer, int out, int in, const T* x, T* y) {           \
@@ -166,20 +157,16 @@ namespace pbnbrdf::kernels {
     HWY_DYNAMIC_DISPATCH(DenseTanh##Suffix)(layer, out, in, x, y);          \
   }                                                                         \
   template <>                                                               \
+  void DenseRelu(const T* layer, int out, int in, const T* x, T* y) {       \
+    HWY_DYNAMIC_DISPATCH(DenseRelu##Suffix)(layer, out, in, x, y);          \
+  }                                                                         \
+  template <>                                                               \
   void DenseTransposed(const T* layer, int out, int in, const T* y, T* x) { \
     HWY_DYNAMIC_DISPATCH(DenseTransposed##Suffix)(layer, out, in, y, x);    \
   }                                                                         \
   template <>                                                               \
-  void Tanh(T* x, std::size_t count) {                                      \
-    HWY_DYNAMIC_DISPATCH(Tanh##Suffix)(x, count);                           \
-  }                                                                         \
-  template <>                                                               \
   void Exp(T* x, std::size_t count) {                                       \
     HWY_DYNAMIC_DISPATCH(Exp##Suffix)(x, count);                            \
-  }                                                                         \
-  template <>                                                               \
-  void Relu(T* x, std::size_t count) {                                      \
-    HWY_DYNAMIC_DISPATCH(Relu##Suffix)(x, count);                           \
   }                                                                         \
   template <>                                                               \
   void ReluSlopes(const T* y, std::size_t count, T* delta) {                \

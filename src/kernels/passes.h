@@ -1,5 +1,5 @@
-// passes.h: what passes of a network forward and backward are made of: products with the weights of
-// a layer, and activations. Layouts and T: kernels.h.
+// passes.h: the parts of a network's forward and backward passes: products with the weights of a
+// layer, and activations. Layouts and T: kernels.h.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,25 @@ namespace pbnbrdf::kernels {
 template <typename T>
 void Dense(const T* layer, int out, int in, const T* x, T* y);
 
-// y = tanh(W x + b); errors as for Tanh.
+// y = tanh(W x + b). Absolute error of tanh below 4e-7 (float; 2e-7 with AVX-512) or 1e-14 (double); odd,
+// within [-1, 1], NaN for NaN.
 template <typename T>
 void DenseTanh(const T* layer, int out, int in, const T* x, T* y);
+
+// y = max(0, W x + b), NaN for NaN.
+template <typename T>
+void DenseRelu(const T* layer, int out, int in, const T* x, T* y);
+
+// The derivative of DenseRelu: sets delta to 0 where y <= 0. count: a multiple of kBatch.
+template <typename T>
+void ReluSlopes(const T* y, std::size_t count, T* delta);
 
 // x = W' y, the bias left out. Shapes as for Dense.
 template <typename T>
 void DenseTransposed(const T* layer, int out, int in, const T* y, T* x);
 
-// In place; absolute error below 4e-7 (float; 2e-7 with AVX-512) or 1e-14 (double), odd, within
-// [-1, 1], NaN for NaN.
-// count: a multiple of kBatch.
-template <typename T>
-void Tanh(T* x, std::size_t count);
-
 // In place, to a few units in the last place. count: a multiple of kBatch.
 template <typename T>
 void Exp(T* x, std::size_t count);
-
-// x = max(0, x), in place, and its derivative: delta = 0 where y <= 0. count: a multiple of kBatch.
-template <typename T>
-void Relu(T* x, std::size_t count);
-template <typename T>
-void ReluSlopes(const T* y, std::size_t count, T* delta);
 
 }  // namespace pbnbrdf::kernels

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
 namespace {
 
-// Rows of the register block of AddProduct: 3 vectors wide, it fills the register file.
+// Rows of the register block of AddProduct. With 3 vectors a row it fills all registers.
 constexpr int kBlockRows = kManyRegisters ? 8 : 4;
 constexpr int kRowProductRows = HWY_MAX_BYTES >= 64 ? 4 : 2;
 
@@ -109,14 +109,14 @@ HWY_INLINE void ProductBlock(const T* x, const T* y, int y_stride, double* c, in
   }
 }
 
-// ProductBlock<rows, kVectors>, 1 <= rows <= kMostRows.
-template <int kMostRows, int kVectors, typename T>
+// ProductBlock<rows, kVectors>, 1 <= rows <= kMaxRows.
+template <int kMaxRows, int kVectors, typename T>
 HWY_INLINE void ProductRows(int rows, const T* x, const T* y, int y_stride, double* c,
                             int c_stride) {
-  if (rows == kMostRows) {
-    ProductBlock<kMostRows, kVectors>(x, y, y_stride, c, c_stride);
-  } else if constexpr (kMostRows > 1) {
-    ProductRows<kMostRows - 1, kVectors>(rows, x, y, y_stride, c, c_stride);
+  if (rows == kMaxRows) {
+    ProductBlock<kMaxRows, kVectors>(x, y, y_stride, c, c_stride);
+  } else if constexpr (kMaxRows > 1) {
+    ProductRows<kMaxRows - 1, kVectors>(rows, x, y, y_stride, c, c_stride);
   }
 }
 

@@ -7,7 +7,7 @@
 namespace pbnbrdf::kernels {
 
 // out[n][(i, j)] = a[n][i] b[n][j], for n < kBatch. By sample:
-//   a: stride Padded(na), kPad readable elements behind the last sample; likewise b with nb.
+//   a: stride Padded(na), kPad readable elements after the last sample; likewise b with nb.
 //   out: pairs (i, j) in order, j fastest; with `symmetric` (a == b) those with j >= i only. Sample
 //      stride out_stride, at least kPad more than there are pairs: kPad zeros follow them.
 template <typename T>

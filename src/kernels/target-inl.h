@@ -1,5 +1,5 @@
-// target-inl.h: what kernels know of the instruction set that they are compiled for. Included once
-// for each instruction set, behind foreach_target.h.
+// target-inl.h: properties of the instruction set that kernels are compiled for. Included once for
+// each instruction set, after foreach_target.h.
 
 // Highway's own form of #pragma once for such files.
 #if defined(PBNBRDF_TARGET_INL_H) == defined(HWY_TARGET_TOGGLE)

@@ -51,14 +51,11 @@ void BatchedMlp<T>::Forward(const T* weights, const T* input) {
   input_ = input;
   for (int layer = 0; layer < shape_.num_layers(); ++layer) {
     T* output = activations_[layer].data();
-    const T* layer_weights = weights + shape_.offset(layer);
     const bool hidden = layer + 1 < shape_.num_layers();
-    if (hidden && shape_.activation() == Activation::kTanh) {
-      kernels::DenseTanh(layer_weights, shape_.out(layer), shape_.in(layer), input, output);
-    } else {
-      kernels::Dense(layer_weights, shape_.out(layer), shape_.in(layer), input, output);
-      if (hidden) kernels::Relu(output, activations_[layer].size());
-    }
+    const auto dense = !hidden                                    ? kernels::Dense<T>
+                       : shape_.activation() == Activation::kTanh ? kernels::DenseTanh<T>
+                                                                  : kernels::DenseRelu<T>;
+    dense(weights + shape_.offset(layer), shape_.out(layer), shape_.in(layer), input, output);
     input = output;
   }
   if (HasOneOutput()) RepeatOutput();

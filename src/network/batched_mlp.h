@@ -44,7 +44,7 @@ class BatchedMlp {
   // After Backward: a row after the other, each by feature, out(layer) x kBatch.
   const T* delta(int layer) const { return deltas_[layer].data(); }
 
-  // After Forward: makes the layers' inputs available by sample, kPad readable elements behind the
+  // After Forward: makes the layers' inputs available by sample, kPad readable elements after the
   // last (kernels.h):
   void TransposeInputs();
 

@@ -2,38 +2,14 @@
 
 #include <algorithm>
 
-#include "kernels/evaluation.h"
 #include "network/batched_mlp.h"
+#include "network/evaluation.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
 namespace {
 
 using kernels::kBatch;
-
-static_assert(sizeof(DirectionPair) == 6 * sizeof(double) && sizeof(Rgb) == 3 * sizeof(double));
-
-constexpr float kLargest = 1e12f;
-static_assert(kLargest <= Brdf::kLargestValue);
-
-// kBatch pairs as inputs by feature.
-void EncodeBatch(Encoding encoding, const DirectionPair* pairs, float* inputs) {
-  const double* components = &pairs->wi.x;
-  switch (encoding) {
-    case Encoding::kCartesian:
-      return kernels::EncodeCartesian(components, inputs);
-    case Encoding::kReciprocal:
-      return kernels::EncodeReciprocal(components, inputs);
-    case Encoding::kMultiscale:
-      return kernels::EncodeMultiscale(components, inputs);
-    case Encoding::kMerl:
-      return kernels::EncodeMerl(components, inputs);
-    case Encoding::kBilateral:
-      return kernels::EncodeBilateral(components, inputs);
-    case Encoding::kAnisotropic:
-      return kernels::EncodeAnisotropic(components, inputs);
-  }
-}
 
 }  // namespace
 
@@ -49,7 +25,7 @@ void FastNeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
   const auto evaluate = [&](const DirectionPair* from, Rgb* to) {
     EncodeBatch(shape_.encoding(), from, inputs.data());
     mlp.Forward(weights_.data(), inputs.data());
-    kernels::Reflectances(mlp.output(), kLargest, to->data());
+    ReflectanceBatch(mlp.output(), to);
   };
   std::size_t n = 0;
   for (; n + kBatch <= pairs.size(); n += kBatch) evaluate(&pairs[n], &values[n]);

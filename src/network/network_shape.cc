@@ -7,12 +7,12 @@ namespace pbnbrdf {
 NetworkShape::NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation,
                            int outputs)
     : encoding_(encoding), activation_(activation), sizes_{kEncodedSize}, offsets_{0} {
-  if (hidden.empty() || hidden.size() >= kMostLayers) {
-    Fail("hidden: ", hidden.size(), " layers; must be 1 to ", kMostLayers - 1);
+  if (hidden.empty() || hidden.size() >= kMaxLayers) {
+    Fail("hidden: ", hidden.size(), " layers; must be 1 to ", kMaxLayers - 1);
   }
   for (int size : hidden) {
-    if (size < 1 || size > kLargestLayer) {
-      Fail("hidden: a layer of ", size, " units; must be 1 to ", kLargestLayer);
+    if (size < 1 || size > kMaxLayerSize) {
+      Fail("hidden: a layer of ", size, " units; must be 1 to ", kMaxLayerSize);
     }
     sizes_.push_back(size);
   }

@@ -102,19 +102,27 @@ NeuralBrdf NeuralBrdf::Read(const std::string& path) {
   return NeuralBrdf(shape, std::move(weights), file.metadata);
 }
 
+std::vector<LayerWeights> NeuralBrdf::Layers() const {
+  std::vector<LayerWeights> layers;
+  for (int l = 0; l < shape_.num_layers(); ++l) {
+    layers.push_back({shape_.in(l), shape_.out(l), /*hidden=*/l + 1 < shape_.num_layers(),
+                      weights_.data() + shape_.offset(l)});
+  }
+  return layers;
+}
+
 std::string NeuralBrdf::Serialized() const {
   SafetensorsFile file;
   file.metadata = metadata_;
-  for (int layer = 0; layer < shape_.num_layers(); ++layer) {
-    const int in = shape_.in(layer), out = shape_.out(layer);
-    Tensor w = {{out, in}, {}}, b = {{out}, {}};
-    const double* row = weights_.data() + shape_.offset(layer);
-    for (int o = 0; o < out; ++o, row += in + 1) {
-      w.values.insert(w.values.end(), row, row + in);
-      b.values.push_back(row[in]);
+  int number = 0;
+  for (const LayerWeights& layer : Layers()) {
+    Tensor w = {{layer.out, layer.in}, {}}, b = {{layer.out}, {}};
+    for (int o = 0; o < layer.out; ++o) {
+      for (int i = 0; i < layer.in; ++i) w.values.push_back(layer.weight(o, i));
+      b.values.push_back(layer.bias(o));
     }
-    file.tensors[WeightName(layer)] = std::move(w);
-    file.tensors[BiasName(layer)] = std::move(b);
+    file.tensors[WeightName(number)] = std::move(w);
+    file.tensors[BiasName(number++)] = std::move(b);
   }
   return SafetensorsBytes(file);
 }
@@ -135,8 +143,7 @@ void NeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
     mlp.Forward(weights_.data(), input.data());
     for (int n = 0; n < count; ++n) {
       for (int c = 0; c < NetworkShape::kChannels; ++c) {
-        const double f = std::expm1(mlp.output()[c * kBatch + n]);
-        values[first + n][c] = f > 0.0 ? std::min(f, kLargestValue) : 0.0;  // 0 for NaN too
+        values[first + n][c] = ClampedReflectance(mlp.output()[c * kBatch + n]);
       }
     }
   }

@@ -1,7 +1,6 @@
 #include "network/safetensors.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -14,23 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-static_assert(std::endian::native == std::endian::little, "safetensors files are little-endian");
-
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kAlignment = 8;
-
-struct Range {
-  std::size_t begin, end;
-};
-
-template <typename T>
-void AppendValues(const std::string& bytes, Range range, std::vector<double>* values) {
-  for (std::size_t at = range.begin; at < range.end; at += sizeof(T)) {
-    T value;
-    std::memcpy(&value, bytes.data() + at, sizeof(T));
-    values->push_back(value);
-  }
-}
 
 // `data`: where the tensors' bytes begin in `bytes`.
 Tensor ParseTensor(const std::string& place, const json& entry, const std::string& bytes,
@@ -55,13 +39,8 @@ Tensor ParseTensor(const std::string& place, const json& entry, const std::strin
     Fail(place, ": data_offsets ", json(offsets).dump(), " don't fit shape ",
          json(tensor.shape).dump(), " of ", dtype, " in ", available, " bytes of data");
   }
-  const Range range = {data + offsets[0], data + offsets[1]};
-  tensor.values.reserve(count);
-  if (dtype == "F64") {
-    AppendValues<double>(bytes, range, &tensor.values);
-  } else {
-    AppendValues<float>(bytes, range, &tensor.values);
-  }
+  const auto data_bytes = std::string_view(bytes).substr(data + offsets[0], count * size);
+  tensor.values = dtype == "F64" ? ToDoubles<double>(data_bytes) : ToDoubles<float>(data_bytes);
   for (double value : tensor.values) {
     if (!std::isfinite(value)) Fail(place, ": holds a value that is not finite");
   }
@@ -79,7 +58,7 @@ std::map<std::string, std::string> ParseMetadata(const std::string& path, const 
 }  // namespace
 
 SafetensorsFile ReadSafetensors(const std::string& path) {
-  const std::string bytes = ReadFile(path, kLargestWeightFile);
+  const std::string bytes = ReadFile(path, kMaxWeightFileSize);
   std::uint64_t header_size = 0;
   if (bytes.size() >= kLengthBytes) std::memcpy(&header_size, bytes.data(), kLengthBytes);
   if (header_size < 2 || header_size > bytes.size() - kLengthBytes) {

@@ -8,7 +8,7 @@ std::mutex one_at_a_time;
 }  // namespace
 
 Hdf5Turn::Hdf5Turn() : lock_(one_at_a_time) {
-  // Otherwise HDF5 may say at the end of the program that it couldn't let go of a damaged file.
+  // Otherwise HDF5 may report, at the end of the program, that it couldn't close a damaged file.
   H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

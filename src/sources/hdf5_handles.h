@@ -1,5 +1,5 @@
-// hdf5_handles.h: what reading and writing HDF5 files share: identifiers that close themselves, and
-// one call at a time.
+// hdf5_handles.h: shared by the reader and the writer of HDF5 files: identifiers that close themselves,
+// a lock, and error texts.
 #pragma once
 
 #include <hdf5.h>

@@ -34,9 +34,9 @@ std::uint64_t LoadUint64(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// Whether the local heap at `heap` has a free list that runs in a circle: "HEAP", 4 bytes, then the
+// Whether the local heap at `heap` has a free list that is circular: "HEAP", 4 bytes, then the
 // data segment's size, the offset of the first free block in it, and its address. A free block
-// begins with the offset of the next, 1 at the end, and its own size. Counts down *blocks_left.
+// begins with the offset of the next one (1: none) and its own size. Counts down *blocks_left.
 bool FreeListIsCircular(std::string_view bytes, std::size_t heap, std::uint64_t* blocks_left) {
   constexpr std::uint64_t kEnd = 1, kHeader = 32;
   if (bytes.size() - heap < kHeader) return false;
@@ -45,7 +45,7 @@ bool FreeListIsCircular(std::string_view bytes, std::size_t heap, std::uint64_t*
   const std::uint64_t size = std::min(LoadUint64(bytes, heap + 8), bytes.size() - segment);
   std::uint64_t block = LoadUint64(bytes, heap + 16);
   while (block != kEnd) {
-    if (size < kFreeBlock || block > size - kFreeBlock) return false;  // HDF5 sees this by itself
+    if (size < kFreeBlock || block > size - kFreeBlock) return false;  // HDF5 reports this itself
     if (*blocks_left == 0) return true;
     --*blocks_left;
     block = LoadUint64(bytes, segment + block);
@@ -53,11 +53,11 @@ bool FreeListIsCircular(std::string_view bytes, std::size_t heap, std::uint64_t*
   return false;
 }
 
-// Throws Error if HDF5 would follow a circle until memory runs out, as versions to 1.10 do (the
-// heaps hold groups' names).
+// Throws Error if a free list is circular: HDF5 up to version 1.10 follows it until memory runs out.
+// (The heaps hold the names in groups.)
 void CheckHeaps(const std::string& path, std::string_view bytes) {
   constexpr std::string_view kHeap = "HEAP";
-  std::uint64_t blocks_left = bytes.size() / kFreeBlock;  // all heaps' together fit into the file
+  std::uint64_t blocks_left = bytes.size() / kFreeBlock;  // in all heaps together
   for (std::size_t at = bytes.find(kHeap); at != bytes.npos; at = bytes.find(kHeap, at + 1)) {
     if (FreeListIsCircular(bytes, at, &blocks_left)) {
       Fail(path, ": damaged HDF5 file (the heap at byte ", at, " runs in a circle); copy it again");
@@ -124,8 +124,8 @@ std::size_t ElementSize(const std::string& place, const Handle& dataset) {
   Fail(place, " is not of type float32 or float64; save it as float32");
 }
 
-// Throws Error unless the elements lie in one piece within the file: chunks may be compressed to
-// far less than they need in memory, and other files are none of ours.
+// Throws Error unless the elements lie in one piece within the file. Compressed chunks could need far
+// more memory than the file's size, and other files must not be read.
 void CheckStorage(const std::string& place, const Handle& dataset) {
   const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
   if (!creation) FailDamaged(place);
@@ -167,17 +167,17 @@ Tensor ReadDataset(const std::string& place, const Handle& group, const std::str
 }  // namespace
 
 std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
-  const std::string bytes = ReadFile(path, kLargestWeightFile);
+  const std::string bytes = ReadFile(path, kMaxWeightFileSize);
   CheckSuperblock(path, bytes);
   CheckHeaps(path, bytes);
   const Hdf5Turn turn;
   const Handle access = ImageAccess(bytes);
-  // HDF5 wants a name that no file has: there is none below a regular file.
+  // HDF5 wants a name that no file can have: a regular file has no files below it.
   const std::string image = path + "/image";
   const Handle file(H5Fopen(image.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file) FailDamaged(path);
   std::vector<KerasDenseLayer> layers;
-  for (int k = 1; k <= NetworkShape::kMostLayers; ++k) {
+  for (int k = 1; k <= NetworkShape::kMaxLayers; ++k) {
     const std::string name = StrCat("dense_", k), place = StrCat(path, ": dataset /", name);
     if (k > 1 && !Has(place, file, name)) break;
     // Keras repeats the layer's name.

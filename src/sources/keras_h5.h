@@ -17,7 +17,7 @@ struct KerasDenseLayer {
 
 // The layers dense_1, dense_2, ... up to the first that is missing; float32 or float64 of either
 // byte order, stored contiguously. Throws Error if the file is missing, larger than
-// kLargestWeightFile, not HDF5 or damaged, or if a layer's dataset is missing or of another type.
+// kMaxWeightFileSize, not HDF5 or damaged, or if a layer's dataset is missing or of another type.
 // May be called from several threads at once: calls take turns, as HDF5 isn't thread-safe. If this
 // is the first use of HDF5 in a program, HDF5 won't close what the program itself leaves open.
 std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path);

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "brdf/merl_rows.h"
+#include "pbnbrdf/brdf/merl_rows.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/brdf/half_diff.h"

@@ -99,17 +99,14 @@ void AppendBlock(const Layer& layer, std::vector<double>* weights) {
 
 // The reverse of AppendBlock, for all layers.
 std::vector<KerasDenseLayer> DenseLayers(const NeuralBrdf& network) {
-  const NetworkShape& shape = network.shape();
   std::vector<KerasDenseLayer> layers;
-  for (int l = 0; l < shape.num_layers(); ++l) {
-    const int in = shape.in(l), out = shape.out(l);
-    const double* block = network.weights().data() + shape.offset(l);
-    KerasDenseLayer layer = {StrCat("dense_", l + 1), {{in, out}, {}}, {{out}, {}}};
-    for (int i = 0; i < in; ++i) {
-      for (int o = 0; o < out; ++o) layer.kernel.values.push_back(block[o * (in + 1) + i]);
+  for (const LayerWeights& from : network.Layers()) {
+    KerasDenseLayer& layer = layers.emplace_back();
+    layer = {StrCat("dense_", layers.size()), {{from.in, from.out}, {}}, {{from.out}, {}}};
+    for (int i = 0; i < from.in; ++i) {
+      for (int o = 0; o < from.out; ++o) layer.kernel.values.push_back(from.weight(o, i));
     }
-    for (int o = 0; o < out; ++o) layer.bias.values.push_back(block[o * (in + 1) + in]);
-    layers.push_back(std::move(layer));
+    for (int o = 0; o < from.out; ++o) layer.bias.values.push_back(from.bias(o));
   }
   return layers;
 }
@@ -117,7 +114,7 @@ std::vector<KerasDenseLayer> DenseLayers(const NeuralBrdf& network) {
 void CheckIsNbrdf(const NeuralBrdf& network) {
   const NetworkShape& shape = network.shape();
   if (shape.encoding() != Encoding::kCartesian || shape.activation() != Activation::kRelu) {
-    Fail("an NBRDF network has relu units behind the cartesian encoding, this one is ",
+    Fail("an NBRDF network has relu units and the cartesian encoding, this one is ",
          NameOf(kActivations, shape.activation()), ", ", NameOf(kEncodings, shape.encoding()),
          "; fit with --encoding=cartesian --activation=relu");
   }

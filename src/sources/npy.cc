@@ -1,7 +1,6 @@
 #include "sources/npy.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <string_view>
 
@@ -12,10 +11,8 @@
 namespace pbnbrdf {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "'<f4' and '<f8' are little-endian");
-
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::size_t kMostDimensions = 32;  // NumPy's own limit
+constexpr std::size_t kMaxDimensions = 32;  // NumPy's own limit
 
 // The header's text, printable ASCII, and where the elements begin.
 struct Layout {
@@ -48,7 +45,7 @@ Layout FindHeader(const std::string& path, std::string_view bytes) {
   return {header, begin + length};
 }
 
-// The header's text between `open` and `close` behind 'key':.
+// The header's text between `open` and `close` after 'key':.
 std::string_view HeaderValue(const std::string& path, std::string_view header, const char* key,
                              std::string_view open, std::string_view close) {
   const std::string quoted = StrCat("'", key, "':");
@@ -71,19 +68,8 @@ std::vector<std::int64_t> ParseShape(const std::string& path, std::string_view t
   for (const std::string& extent : Split(text, ',')) {
     shape.push_back(ParseInteger(StrCat(path, ": 'shape'"), extent));
   }
-  if (shape.size() > kMostDimensions) Fail(path, ": ", shape.size(), " dimensions");
+  if (shape.size() > kMaxDimensions) Fail(path, ": ", shape.size(), " dimensions");
   return shape;
-}
-
-template <typename T>
-std::vector<double> ToDouble(std::string_view bytes) {
-  std::vector<double> values(bytes.size() / sizeof(T));
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    T value;
-    std::memcpy(&value, bytes.data() + n * sizeof(T), sizeof(T));
-    values[n] = value;
-  }
-  return values;
 }
 
 // From first index fastest to last index fastest, for the rows x columns of a matrix.
@@ -99,7 +85,7 @@ std::vector<double> Transposed(const std::vector<double>& values, std::size_t ro
 }  // namespace
 
 Tensor ReadNpy(const std::string& path) {
-  const std::string bytes = ReadFile(path, kLargestWeightFile);
+  const std::string bytes = ReadFile(path, kMaxWeightFileSize);
   const auto [header, data] = FindHeader(path, bytes);
   const std::string_view elements = std::string_view(bytes).substr(data);
   const std::string_view type = HeaderValue(path, header, "descr", "'", "'");
@@ -115,7 +101,7 @@ Tensor ReadNpy(const std::string& path) {
     Fail(path, ": its header says ", ShapeText(tensor.shape), " of '", type, "', but ",
          elements.size(), " bytes follow: truncated or damaged; copy it again");
   }
-  tensor.values = type == "<f4" ? ToDouble<float>(elements) : ToDouble<double>(elements);
+  tensor.values = type == "<f4" ? ToDoubles<float>(elements) : ToDoubles<double>(elements);
   if (order == "True" && tensor.shape.size() == 2) {
     tensor.values = Transposed(tensor.values, tensor.shape[0], tensor.shape[1]);
   } else if (order != "False" && !(order == "True" && tensor.shape.size() < 2)) {

@@ -9,7 +9,7 @@
 namespace pbnbrdf {
 
 // Reads little-endian float32 and float64 ('<f4', '<f8') in either order. Throws Error if the file
-// is missing, larger than kLargestWeightFile, of another type, or longer or shorter than its header
+// is missing, larger than kMaxWeightFileSize, of another type, or longer or shorter than its header
 // says.
 Tensor ReadNpy(const std::string& path);
 

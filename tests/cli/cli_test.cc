@@ -302,10 +302,9 @@ TEST_F(Cli, ExportsThatCannotBeAreNamed) {
   ExpectError(to + " --format=obj", 2,
               "--format=obj is not one of npy | h5 | merl | csv | c | glsl");
   ExpectError(to + " --format=c --name=a-b", 1, "a.safetensors, exported as c: name=a-b is not");
-  ExpectError(
-      "export --format=npy --fit=" + network + " --out=" + Path("x_fc1.npy"), 1,
-      "a.safetensors, exported as npy: an NBRDF network has relu units behind the cartesian "
-      "encoding, this one is tanh, merl");
+  ExpectError("export --format=npy --fit=" + network + " --out=" + Path("x_fc1.npy"), 1,
+              "a.safetensors, exported as npy: an NBRDF network has relu units and the cartesian "
+              "encoding, this one is tanh, merl");
   ExpectError("export --format=c --fit=" + Path("none.safetensors") + " --out=" + Path("out"), 1,
               "none.safetensors: no such file");
   ExpectError("export --format=mitsuba --fit=" + network + " --out=" + Path("none/x.py"), 1,

@@ -122,10 +122,9 @@ TEST(Export, WhatAFormatCannotHoldIsSaid) {
   };
   for (ExportFormat format : {ExportFormat::kNpy, ExportFormat::kH5}) {
     const std::string path = format == ExportFormat::kNpy ? "fc1.npy" : "a.h5";
-    EXPECT_EQ(
-        error(Merl(), format, path),
-        "an NBRDF network has relu units behind the cartesian encoding, this one is tanh, merl; "
-        "fit with --encoding=cartesian --activation=relu");
+    EXPECT_EQ(error(Merl(), format, path),
+              "an NBRDF network has relu units and the cartesian encoding, this one is tanh, merl; "
+              "fit with --encoding=cartesian --activation=relu");
     std::vector<double> weights = Relu().weights();
     weights[0] = -1e39;
     EXPECT_EQ(error(NeuralBrdf(Relu().shape(), weights), format, path),

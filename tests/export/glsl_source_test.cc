@@ -143,7 +143,7 @@ std::vector<Texel> Draw(const NeuralBrdf& network, const std::string& name,
 // As glsl_source.h promises.
 double Allowed(const NeuralBrdf& network, double f) {
   const Encoding encoding = network.shape().encoding();
-  const bool bends = encoding == Encoding::kMerl || encoding == Encoding::kBilateral;
+  const bool bends = encoding == Encoding::kMerl;
   return bends ? 1e-4 * (1.0 + f) : 1e-5 * f + 1e-6;
 }
 

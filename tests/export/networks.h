@@ -92,7 +92,7 @@ inline std::vector<Rgb> LibraryValues(const Brdf& brdf, const std::vector<FloatP
 
 // Whether exchanging wi and wo leaves the value as it is.
 inline bool IsReciprocal(const NeuralBrdf& network) {
-  return network.shape().encoding() != Encoding::kCartesian;
+  return IsReciprocal(network.shape().encoding());
 }
 
 }  // namespace pbnbrdf

@@ -10,7 +10,6 @@ import subprocess
 import sys
 
 SKIP = 77
-ENCODINGS = ["cartesian", "reciprocal", "multiscale", "merl", "bilateral", "anisotropic"]
 ACTIVATIONS = ["tanh", "relu"]
 HIDDEN = [[21, 21], [5], [9, 16, 6]]
 
@@ -63,9 +62,17 @@ def write_network(file, layers, encoding, activation):
         "format": "pbnbrdf", "encoding": encoding, "activation": activation, "output": "expm1"})
 
 
+def encodings():
+    """The names of all encodings, from the message about one that there isn't."""
+    file = path("unknown.safetensors")
+    write_network(file, random_layers([2], 0), "unknown", "tanh")
+    done = subprocess.run([sys.argv[1], "info", file], capture_output=True, text=True)
+    return done.stderr.partition("encoding=unknown is not one of ")[2].strip().split(" | ")
+
+
 def all_networks():
     """(name, encoding, file) of each encoding with each activation, and of one with one channel."""
-    for n, encoding in enumerate(ENCODINGS):
+    for n, encoding in enumerate(encodings()):
         for k, activation in enumerate(ACTIVATIONS):
             name = f"{encoding}_{activation}"
             file = path(name + ".safetensors")

@@ -25,7 +25,7 @@ for name, encoding, file in all_networks():
     assert (expected > 0).any() and (expected[:-4] == 0).any() and (rgb[-4:] == 0).all()
     # As onnx_model.h promises.
     allowed = 1e-5 * expected + 1e-6
-    if encoding in ("merl", "bilateral"):
+    if encoding == "merl":
         allowed = 1e-4 * (1 + expected)
     check(f"{name}, error over what is allowed", np.max(np.abs(rgb - expected) / allowed), 1)
 

@@ -47,7 +47,6 @@ def encode(encoding, wi, wo):
         "reciprocal": (sin, zero, cos, s * np.cos(2 * phi_d), s * np.sin(2 * phi_d), z),
         "multiscale": (sin, root, log, c2, s2phi, z),
         "merl": (bend, root, log, c2, s2phi, z),
-        "bilateral": (bend, root, log, c2, sin, z),
         "anisotropic": (root**1.5 * np.cos(phi), root**1.5 * np.sin(phi), log,
                         s2 * np.cos(turned), s2 * np.sin(turned), z)}
     return np.stack(columns[encoding], axis=1)

@@ -49,6 +49,22 @@ TYPED_TEST(Kernels, DenseTransposedIsWTransposedY) {
   });
 }
 
+// In place, by a layer of one unit that passes its only input on. count: a multiple of kBatch.
+template <typename T, typename Layer>
+void Activate(Layer dense, T* x, std::size_t count) {
+  const T layer[] = {1, 0};
+  std::vector<T> y(kBatch);
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    dense(layer, 1, 1, x + first, y.data());
+    std::copy(y.begin(), y.end(), x + first);
+  }
+}
+
+template <typename T>
+void Tanh(T* x, std::size_t count) {
+  Activate(DenseTanh<T>, x, count);
+}
+
 // From denormal to infinite, and densely where tanh bends.
 template <typename T>
 std::vector<T> TanhArguments() {
@@ -94,7 +110,7 @@ TYPED_TEST(Kernels, TanhIsOddAndBoundedAndKeepsNaN) {
   });
 }
 
-TYPED_TEST(Kernels, DenseTanhIsDenseThenTanh) {
+TYPED_TEST(Kernels, ActivatedLayersAreDenseThenActivated) {
   using T = TypeParam;
   ForEachInstructionSet([&](const char* set) {
     SCOPED_TRACE(set);
@@ -103,8 +119,12 @@ TYPED_TEST(Kernels, DenseTanhIsDenseThenTanh) {
       std::vector<T> y(out * kBatch), expected(out * kBatch);
       DenseTanh(layer.data(), out, in, x.data(), y.data());
       Dense(layer.data(), out, in, x.data(), expected.data());
+      std::vector<T> relu = expected;
       Tanh(expected.data(), expected.size());
       EXPECT_EQ(y, expected) << out << " x " << in;
+      DenseRelu(layer.data(), out, in, x.data(), y.data());
+      for (T& value : relu) value = std::max(value, T(0));
+      EXPECT_EQ(y, relu) << out << " x " << in;
     }
   });
 }
@@ -128,7 +148,7 @@ TYPED_TEST(Kernels, ReluAndItsSlopes) {
   x[5] = std::numeric_limits<T>::quiet_NaN();
   x[6] = -x[5];
   std::vector<T> y = x, gradient = delta;
-  Relu(y.data(), y.size());
+  Activate(DenseRelu<T>, y.data(), y.size());
   ReluSlopes(y.data(), y.size(), gradient.data());
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isnan(x[i])) {

@@ -1,15 +1,17 @@
 #include "pbnbrdf/network/encoding.h"
 
+#include <ceres/jet.h>
+
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/models/builtin.h"
 
 namespace pbnbrdf {
 namespace {
 
-TEST(Encoding, AllButCartesianAreReciprocalToTheBit) {
+TEST(Encoding, ReciprocalOnesAreSoToTheBit) {
   for (const DirectionPair& pair : HardAndRandomPairs(100000, /*seed=*/1)) {
     for (const auto& [name, encoding] : kEncodings) {
-      if (encoding == Encoding::kCartesian) continue;
+      if (!IsReciprocal(encoding)) continue;
       const auto there = Encode(encoding, pair), back = Encode(encoding, Swapped(pair));
       for (int i = 0; i < kEncodedSize; ++i) {
         ASSERT_EQ(there[i], back[i]) << name << " input " << i;
@@ -18,7 +20,10 @@ TEST(Encoding, AllButCartesianAreReciprocalToTheBit) {
   }
 }
 
-TEST(Encoding, CartesianIsNotReciprocal) {
+TEST(Encoding, CartesianAloneIsNotReciprocal) {
+  for (const auto& [name, encoding] : kEncodings) {
+    EXPECT_EQ(IsReciprocal(encoding), encoding != Encoding::kCartesian) << name;
+  }
   const DirectionPair pair = {FromSpherical(0.3, 0.2), FromSpherical(0.9, 2.0)};
   EXPECT_NE(Encode(Encoding::kCartesian, pair), Encode(Encoding::kCartesian, Swapped(pair)));
 }
@@ -55,8 +60,6 @@ TEST(Encoding, IsWhatTheFormulasSay) {
   const double row = 90 * root;  // 50.78: between rows 50 and 51 of a table
   std::array<double, 6> merl = multiscale;
   merl[0] = 4 * (row - 50) * (51 - row);
-  std::array<double, 6> bilateral = merl;
-  bilateral[4] = std::sin(th);
   const double r = std::pow(2 * th / kPi, 0.75);
   const std::array<double, 6> anisotropic = {r * std::cos(ph),
                                              r * std::sin(ph),
@@ -69,13 +72,13 @@ TEST(Encoding, IsWhatTheFormulasSay) {
     EXPECT_NEAR(Encode(Encoding::kReciprocal, pair)[i], reciprocal[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kMultiscale, pair)[i], multiscale[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kMerl, pair)[i], merl[i], 1e-12);
-    EXPECT_NEAR(Encode(Encoding::kBilateral, pair)[i], bilateral[i], 1e-12);
     EXPECT_NEAR(Encode(Encoding::kAnisotropic, pair)[i], anisotropic[i], 1e-14);
   }
 }
 
 TEST(Encoding, IsotropicOnesDontDependOnPhiH) {
-  // Rounding turns h by 1e-16 / sin theta_h, and RowBend grows by up to 360 times its argument.
+  // Rounding turns h by 1e-16 / sin theta_h, and kMerl's first input grows by up to 360 times its
+  // argument.
   for (const DirectionPair& pair : RandomPairs(10000, /*seed=*/3)) {
     const auto turned = Turned(pair, 1.0);
     for (const auto& [name, encoding] : kEncodings) {
@@ -107,31 +110,76 @@ TEST(Encoding, AnisotropicIsContinuousAtThePole) {
   }
 }
 
-// A pair's mirror image in a vertical plane has phi_d of the other sign. In the planes of x and of
-// y it has no rounding of its own, so that all bits must agree; where phi_d alone changes its sign,
-// the rounding of the directions stands between the two.
-TEST(Encoding, BilateralIsTheSameForMirrorImages) {
-  const auto mirrored = [](const DirectionPair& p, double x, double y) {
-    return DirectionPair{{x * p.wi.x, y * p.wi.y, p.wi.z}, {x * p.wo.x, y * p.wo.y, p.wo.z}};
-  };
-  for (const DirectionPair& pair : HardAndRandomPairs(100000, /*seed=*/4)) {
-    const auto there = Encode(Encoding::kBilateral, pair);
-    ASSERT_EQ(there, Encode(Encoding::kBilateral, mirrored(pair, 1.0, -1.0)));
-    ASSERT_EQ(there, Encode(Encoding::kBilateral, mirrored(pair, -1.0, 1.0)));
-  }
-  for (const DirectionPair& pair : RandomPairs(10000, /*seed=*/5)) {
-    RusinkiewiczAngles angles = ToAngles(pair);
-    angles.phi_d = -angles.phi_d;
-    const auto there = Encode(Encoding::kBilateral, pair);
-    const auto image = Encode(Encoding::kBilateral, FromAngles(angles));
-    for (int i = 0; i < kEncodedSize; ++i) ASSERT_NEAR(there[i], image[i], 1e-10) << i;
-  }
-}
-
 TEST(Encoding, MerlTellsMirrorImagesApart) {
   const DirectionPair pair = {FromSpherical(0.3, 0.2), FromSpherical(0.9, 2.0)};
   const DirectionPair image = {FromSpherical(0.3, -0.2), FromSpherical(0.9, -2.0)};
   EXPECT_GT(std::abs(Encode(Encoding::kMerl, pair)[4] - Encode(Encoding::kMerl, image)[4]), 0.01);
+}
+
+using PairJet = ceres::Jet<double, 6>;
+
+Inputs<PairJet> EncodeJets(Encoding encoding, const DirectionPair& pair) {
+  const auto& [wi, wo] = pair;
+  return Encode(encoding,
+                HalfDiffOfPair<PairJet>({PairJet(wi.x, 0), PairJet(wi.y, 1), PairJet(wi.z, 2)},
+                                        {PairJet(wo.x, 3), PairJet(wo.y, 4), PairJet(wo.z, 5)}));
+}
+
+// The pair with one of its six components moved.
+DirectionPair Moved(DirectionPair pair, int component, double by) {
+  Vec3& w = component < 3 ? pair.wi : pair.wo;
+  (component % 3 == 0 ? w.x : component % 3 == 1 ? w.y : w.z) += by;
+  return pair;
+}
+
+TEST(Encoding, JetsHaveTheNumericDerivatives) {
+  constexpr double kStep = 1e-5;
+  constexpr int kPairs = 300;
+  for (const auto& [name, encoding] : kEncodings) {
+    int kinks = 0;
+    double worst = 0.0, largest = 0.0;
+    for (const DirectionPair& pair : RandomPairs(kPairs, /*seed=*/5)) {
+      const Inputs<double> at = Encode(encoding, pair);
+      const Inputs<PairJet> jets = EncodeJets(encoding, pair);
+      for (int c = 0; c < 6; ++c) {
+        const auto above = Encode(encoding, Moved(pair, c, kStep));
+        const auto below = Encode(encoding, Moved(pair, c, -kStep));
+        for (int i = 0; i < kEncodedSize; ++i) {
+          ASSERT_NEAR(jets[i].a, at[i], 1e-12) << name << " input " << i;
+          // At a row of a table, kMerl's first input has a kink.
+          const double right = (above[i] - at[i]) / kStep, left = (at[i] - below[i]) / kStep;
+          const bool is_kink = std::abs(right - left) > 0.1 * (1.0 + std::abs(right + left));
+          kinks += is_kink;
+          if (is_kink) continue;
+          const double slope = 0.5 * (right + left);
+          worst = std::max(worst, std::abs(jets[i].v[c] - slope) / (1.0 + std::abs(slope)));
+          largest = std::max(largest, std::abs(slope));
+        }
+      }
+    }
+    EXPECT_LT(worst, 1e-4) << name;
+    EXPECT_GT(largest, 0.5) << name;
+    EXPECT_LT(kinks, kPairs * 6 * kEncodedSize / 100) << name;
+  }
+}
+
+TEST(Encoding, OneOfEachKindIsPreferred) {
+  for (bool isotropic : {true, false}) {
+    int count = 0;
+    for (const auto& [name, encoding] : kEncodings) {
+      count += TraitsOf(encoding).preferred && IsIsotropic(encoding) == isotropic;
+    }
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(IsIsotropic(PreferredEncoding(isotropic)), isotropic);
+  }
+}
+
+TEST(Encoding, NamesThatAreNotInTheTableAreRefused) {
+  for (const auto& [name, encoding] : kEncodings) {
+    EXPECT_EQ(ParseName(kEncodings, "encoding", name), encoding);
+  }
+  EXPECT_EQ(ErrorOf([] { ParseName(kEncodings, "encoding", "bilateral"); }),
+            "encoding=bilateral is not one of " + JoinNames(kEncodings));
 }
 
 TEST(Encoding, TheOneForAMaterialIsAsIsotropicAsIt) {

@@ -12,7 +12,7 @@ TEST(Npy, ReadsBothPrecisionsAndVersions) {
   TemporaryFolder folder;
   const std::string path = folder / "x.npy";
   const std::vector<double> values = {1.5, -2.0, 0.25, 4.0, 0.0, -6.0};
-  for (char version : {1, 2, 3}) {
+  for (char version : {'\1', '\2', '\3'}) {
     WriteBytes(path, NpyBytes(NpyHeader("<f4", "2, 3"), ElementBytes<float>(values), version));
     EXPECT_THAT(ReadNpy(path).shape, ElementsAre(2, 3));
     EXPECT_EQ(ReadNpy(path).values, values);

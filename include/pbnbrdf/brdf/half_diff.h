@@ -8,9 +8,21 @@
 // [1] S. Rusinkiewicz. A New Change of Variables for Efficient BRDF Representation. EGWR 1998.
 #pragma once
 
+#include <array>
+
 #include "pbnbrdf/brdf/direction.h"
+#include "pbnbrdf/brdf/operations.h"
 
 namespace pbnbrdf {
+
+#include "pbnbrdf/brdf/half_diff-inl.h"
+
+// Of the components of wi and wo.
+template <class V>
+HalfDiffOf<V> HalfDiffOfPair(const std::array<V, 3>& wi, const std::array<V, 3>& wo) {
+  return ToHalfDiffOf<V>({wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]},
+                         {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
+}
 
 struct HalfDiff {
   Vec3 h;  // unit, shading frame

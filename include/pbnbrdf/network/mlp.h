@@ -11,11 +11,10 @@
 
 namespace pbnbrdf {
 
+// A hidden unit's value, on any T of brdf/operations.h. BatchedMlp has these from the kernels.
 template <typename T>
 T Activate(Activation activation, const T& x) {
-  using std::tanh;
-  if (activation == Activation::kTanh) return tanh(x);
-  return x > T(0.0) ? x : T(0.0);
+  return activation == Activation::kTanh ? tanh(x) : Max(x, T(0.0));
 }
 
 // The last layer's values z, before the output unit. input: in(0) numbers; layers: a pointer to
@@ -38,11 +37,11 @@ void EvaluateMlp(const NetworkShape& shape, const double* input, T const* const*
     z[c] = from[std::min(c, from.size() - 1)];
 }
 
-// The output unit: the reflectance while fitting, f^ = expm1(z) > -1, smooth in z. What is
-// evaluated is max(0, f^), as with NBRDF; a clamp has no gradient, so none stands in the fit.
+// The output unit while fitting: f^ = expm1(z) > -1, smooth in z. What is evaluated is
+// ClampedReflectance (expressions-inl.h), as with NBRDF; a clamp has no gradient, so none stands in the
+// fit.
 template <typename T>
 T Reflectance(const T& z) {
-  using std::expm1;
   return expm1(z);
 }
 

@@ -28,10 +28,10 @@ inline constexpr NameTable<Activation, 2> kActivations = {
 class NetworkShape {
  public:
   static constexpr int kChannels = 3;  // that a Brdf has, whatever the outputs
-  static constexpr int kLargestLayer = 256, kMostLayers = 8;
+  static constexpr int kMaxLayerSize = 256, kMaxLayers = 8;
 
   // hidden: sizes of the hidden layers, e.g. {21, 21}. Throws Error unless there are 1 to
-  // kMostLayers - 1 of them, each of 1 to kLargestLayer units, and 1 or kChannels outputs.
+  // kMaxLayers - 1 of them, each of 1 to kMaxLayerSize units, and 1 or kChannels outputs.
   NetworkShape(Encoding encoding, std::vector<int> hidden, Activation activation,
                int outputs = kChannels);
 

@@ -11,6 +11,16 @@
 
 namespace pbnbrdf {
 
+// A layer's weights, where they lie in those of the network (network_shape.h).
+struct LayerWeights {
+  int in, out;
+  bool hidden;
+  const double* block;
+
+  double weight(int output, int input) const { return block[output * (in + 1) + input]; }
+  double bias(int output) const { return weight(output, in); }
+};
+
 // f = max(0, expm1(z)), z the network's output at the encoded pair, or its only one three times.
 class NeuralBrdf final : public Brdf {
  public:
@@ -42,6 +52,7 @@ class NeuralBrdf final : public Brdf {
 
   const NetworkShape& shape() const { return shape_; }
   const std::vector<double>& weights() const { return weights_; }
+  std::vector<LayerWeights> Layers() const;  // to be used while the network lives
   const Metadata& metadata() const { return metadata_; }
 
  private:

@@ -25,12 +25,12 @@ bool IsNbrdfFile(const std::string& path);
 // "FILE.h5" or "FILE.hdf5": datasets as in keras_h5.h. "BASEfc1.npy", where BASE may end a folder's
 // name or be like "folder/blue-acrylic_": the six files BASEfc1.npy (6 x H1), BASEfc2.npy (H1 x H2),
 // BASEfc3.npy (H2 x 3), BASEb1.npy (H1), BASEb2.npy (H2) and BASEb3.npy (3). Throws Error if one is
-// missing, larger than kLargestWeightFile, damaged, of another shape or type, or holds a value that
+// missing, larger than kMaxWeightFileSize, damaged, of another shape or type, or holds a value that
 // isn't finite.
 NeuralBrdf ReadNbrdf(const std::string& path);
 
 // What ReadNbrdf reads from the same name, as float32: one Keras file or six NumPy files. Throws
-// Error if the network isn't one of relu units behind the cartesian encoding, if a weight is beyond
+// Error if the network hasn't relu units and the cartesian encoding, if a weight is beyond
 // float32, or if NumPy files are asked for and there are not two hidden layers.
 std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path);
 

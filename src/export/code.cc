@@ -1,0 +1,134 @@
+#include "export/code.h"
+
+#include <map>
+
+#include "export/source_text.h"
+#include "pbnbrdf/base/error.h"
+
+namespace pbnbrdf {
+namespace {
+
+using Kind = Term::Kind;
+using Vector = std::array<Term, 3>;
+
+// How tightly a text holds together.
+enum class Binding { kTernary, kSum, kProduct, kAtom };
+
+struct Text {
+  std::string text;
+  Binding binding;
+
+  // In parentheses unless it holds together at least as tightly as asked for.
+  std::string Bound(Binding least) const { return binding < least ? "(" + text + ")" : text; }
+};
+
+std::string Fill(std::string_view pattern, const std::vector<std::string>& operands) {
+  std::string text;
+  auto next = operands.begin();
+  for (char c : pattern) text += c == '$' ? *next++ : std::string(1, c);
+  return text;
+}
+
+class Printer {
+ public:
+  explicit Printer(const Language& language) : language_(language) {}
+
+  void CountUses(const Term& term) {
+    if (++uses_[&term.node()] > 1) return;
+    for (const Term& operand : term.node().operands) CountUses(operand);
+  }
+
+  // Prints the statements that it needs.
+  Text Value(const Term& term) {
+    const Term::Node& node = term.node();
+    if (node.kind == Kind::kVariable) return {node.name, Binding::kAtom};
+    if (node.kind == Kind::kConstant) return {Constant(node.constant), Binding::kAtom};
+    const auto known = names_.find(&node);
+    if (known != names_.end()) return {known->second, Binding::kAtom};
+    const Text text = Operation(node);
+    if (uses_[&node] == 1 && node.name.empty()) return text;
+    const std::string name = node.name.empty() ? StrCat("t", ++unnamed_) : node.name;
+    statements_ += Fill(language_.statement, {name, text.text});
+    return {names_[&node] = name, Binding::kAtom};
+  }
+
+  const std::string& statements() const { return statements_; }
+
+ private:
+  std::string Constant(double value) const {
+    return language_.single_precision ? Literal(static_cast<float>(value)) : Literal(value);
+  }
+
+  Text Operation(const Term::Node& node) {
+    std::vector<Text> operands;
+    for (const Term& operand : node.operands) operands.push_back(Value(operand));
+    if (node.kind < Kind::kMax) {
+      // Sums and products associate to the left in all languages, and rounding goes by that.
+      const bool is_sum = node.kind < Kind::kMultiply;
+      const Binding left = is_sum ? Binding::kSum : Binding::kProduct;
+      const Binding right = is_sum ? Binding::kProduct : Binding::kAtom;
+      const char symbol = "+-*/"[static_cast<int>(node.kind)];
+      return {StrCat(operands[0].Bound(left), " ", symbol, " ", operands[1].Bound(right)), left};
+    }
+    const std::string_view pattern =
+        language_
+            .functions[static_cast<std::size_t>(node.kind) - static_cast<std::size_t>(Kind::kMax)];
+    const bool is_if = node.kind == Kind::kIfGreater;
+    std::vector<std::string> texts;
+    for (const Text& text : operands) {
+      texts.push_back(text.Bound(is_if ? Binding::kSum : Binding::kTernary));
+    }
+    return {Fill(pattern, texts), pattern.ends_with(')') ? Binding::kAtom : Binding::kTernary};
+  }
+
+  const Language& language_;
+  std::map<const Term::Node*, int> uses_;
+  std::map<const Term::Node*, std::string> names_;
+  std::string statements_;
+  int unnamed_ = 0;
+};
+
+Vector Components(const Language& language, const std::string& vector) {
+  const auto component = [&](int i) {
+    return Term::Variable(StrCat(vector, language.component[i]));
+  };
+  return {component(0), component(1), component(2)};
+}
+
+}  // namespace
+
+Code PrintTerms(const Language& language, const std::vector<Term>& terms) {
+  Printer printer(language);
+  for (const Term& term : terms) printer.CountUses(term);
+  Code code;
+  for (const Term& term : terms) code.values.push_back(printer.Value(term).text);
+  code.statements = printer.statements();
+  return code;
+}
+
+std::string PrintExpression(const Language& language, const Term& term) {
+  const Code code = PrintTerms(language, {term});
+  if (!code.statements.empty()) Fail("an expression needs statements: ", code.statements);
+  return code.values[0];
+}
+
+Code PrintInputs(const Language& language, Encoding encoding) {
+  const Vector wi = Components(language, "wi"), wo = Components(language, "wo");
+  Vector sum = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  HalfDiffOf<Term> v = ToHalfDiffOf<Term>(sum, {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
+  const std::pair<Term*, const char*> names[] = {{&sum[0], "sum_x"},
+                                                 {&sum[1], "sum_y"},
+                                                 {&sum[2], "sum_z"},
+                                                 {&v.sin_theta, "sin_theta_h"},
+                                                 {&v.cos_theta, "cos_theta_h"},
+                                                 {&v.sin_phi, "sin_phi_h"},
+                                                 {&v.cos_phi, "cos_phi_h"},
+                                                 {&v.dx, "dx"},
+                                                 {&v.dy, "dy"},
+                                                 {&v.dz, "dz"}};
+  for (const auto& [term, name] : names) term->SetName(name);
+  const Inputs<Term> inputs = Encode(encoding, v);
+  return PrintTerms(language, {inputs.begin(), inputs.end()});
+}
+
+}  // namespace pbnbrdf
