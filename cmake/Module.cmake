@@ -1,6 +1,6 @@
 # Warnings and sanitizers are a target; -Werror is for CI.
 add_library(pbnbrdf_warnings INTERFACE)
-target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wno-restrict
+target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-restrict
                        $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
 if(PBNBRDF_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)

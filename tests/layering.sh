@@ -23,7 +23,7 @@ only 'nlohmann' models network render cli
 only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image
 only 'embree' render
-only 'hwy' kernels
+only 'hwy' kernels network
 only 'tbb' brdf models problem solve metrics render
 
 # Public headers that bring in Ceres are those about Ceres problems.
