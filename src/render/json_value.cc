@@ -50,14 +50,12 @@ std::string JsonValue::Text() const {
   return json_->get<std::string>();
 }
 
-double JsonValue::Finite(const ordered_json& json) const {
-  if (!json.is_number()) Refuse("expected a number, found ", Quoted(json));
-  const double value = json.get<double>();
+double JsonValue::Number() const {
+  if (!json_->is_number()) Refuse("expected a number, found ", Quoted(*json_));
+  const double value = json_->get<double>();
   if (!std::isfinite(value)) Refuse("must be finite");
   return value;
 }
-
-double JsonValue::Number() const { return Finite(*json_); }
 
 double JsonValue::Positive() const {
   const double value = Number();
@@ -83,7 +81,8 @@ Vec3 JsonValue::Vector() const {
   if (!json_->is_array() || json_->size() != 3) {
     Refuse("expected three numbers, found ", Quoted(*json_));
   }
-  return {Finite((*json_)[0]), Finite((*json_)[1]), Finite((*json_)[2])};
+  const std::vector<JsonValue> v = Elements();
+  return {v[0].Number(), v[1].Number(), v[2].Number()};
 }
 
 Vec3 JsonValue::Direction() const {
@@ -94,13 +93,9 @@ Vec3 JsonValue::Direction() const {
 }
 
 Rgb JsonValue::Color() const {
-  Rgb color;
-  if (json_->is_number()) {
-    color.fill(Number());
-  } else {
-    const Vec3 v = Vector();
-    color = {v.x, v.y, v.z};
-  }
+  const bool grey = json_->is_number();
+  const Vec3 v = grey ? Vec3{Number(), Number(), Number()} : Vector();
+  const Rgb color = {v.x, v.y, v.z};
   for (double channel : color) {
     if (!(channel >= 0.0)) Refuse("has a channel of ", channel, "; must be >= 0");
     if (channel > kMaxColor) Refuse("has a channel of ", channel, "; must be <= ", kMaxColor);
@@ -113,8 +108,7 @@ void JsonValue::RequireObject() const {
 }
 
 void JsonValue::CheckKeys(const std::vector<std::string>& known) const {
-  RequireObject();
-  for (const auto& [key, value] : json_->items()) {
+  for (const auto& [key, value] : Members()) {
     if (std::count(known.begin(), known.end(), key) > 0) continue;
     Refuse("key ", Quoted(key), " isn't known; did you mean \"", Nearest(known, key), "\"?");
   }

@@ -63,7 +63,6 @@ class JsonValue {
   std::vector<JsonValue> Elements() const;
 
  private:
-  double Finite(const nlohmann::ordered_json& json) const;
   void RequireObject() const;
 
   const nlohmann::ordered_json* json_;

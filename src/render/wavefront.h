@@ -11,7 +11,6 @@
 #include "path.h"
 #include "request_log.h"
 #include "statistics.h"
-#include "vertex.h"
 
 namespace pbnbrdf {
 

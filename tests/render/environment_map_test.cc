@@ -1,4 +1,4 @@
-// Where light comes from, and that directions are drawn with the density that is said.
+// Environment maps: the radiance of each direction, and the density of sampled directions.
 #include "pbnbrdf/render/environment_map.h"
 
 #include "test_util.h"
@@ -56,8 +56,7 @@ TEST(EnvironmentMap, TurnsAboutTheUpAxis) {
   }
 }
 
-// On a fine grid of solid angles: the density integrates to 1, and the radiance over the density is
-// as drawn.
+// By quadrature on a fine grid of directions.
 TEST(EnvironmentMap, DensityIntegratesToOne) {
   const EnvironmentMap environment(RandomMap(8, 4, 3), 20.0, 1.5);
   constexpr int kTheta = 400, kPhi = 720;

@@ -1,4 +1,4 @@
-// Mesh files of either kind, whole and damaged, and affine maps.
+// OBJ and PLY files, whole and damaged; affine maps.
 #include "pbnbrdf/render/mesh.h"
 
 #include <cstring>

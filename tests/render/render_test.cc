@@ -1,4 +1,4 @@
-// Images whose pixels are known in closed form.
+// Images whose pixels are known in closed form, and properties that all images have.
 #include "pbnbrdf/render/render.h"
 
 #include <atomic>
@@ -61,7 +61,7 @@ TEST(Render, NormalsOfAMeshAreInterpolated) {
       kSmooth);
 }
 
-// Tells in which quadrant of the frame the light is.
+// Its value tells in which quadrant of the frame the light is.
 class QuadrantBrdf final : public PointwiseBrdf {
  public:
   bool IsIsotropic() const override { return false; }
@@ -191,8 +191,9 @@ TEST(Render, DirectionalLightOnASphere) {
       kSmooth);
 }
 
-// Irradiance from a polygon of radiance 1, by Lambert's formula: half the sum over its edges of the
-// angle that each is seen under times the cosine between the normal and that of the edge's plane.
+// Irradiance from a polygon of radiance 1, by Lambert's formula: half the sum, over its edges, of the
+// angle that the edge subtends times the cosine between the surface's normal and the normal of the
+// plane through the edge and the point.
 double PolygonIrradiance(const Vec3& point, const Vec3& normal, const std::vector<Vec3>& corners) {
   double sum = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -273,8 +274,7 @@ TEST(Render, EllipsoidsAndMeshesInAFurnace) {
       rendering.image, 0, [](int, int) { return 1.0; }, kExact);
 }
 
-// No surface can be brighter than what it reflects is at most: with albedos of at most 1 that is
-// the light.
+// With albedos of at most 1, no surface is brighter than the brightest light.
 Scene Cove(const std::string& source, int pixels) {
   Scene scene = SceneFrom(3.4, 42.0, pixels);
   AddRectangle({0, -1, 0}, {1, 0, 0}, {0, 0, -1}, source, &scene);
@@ -312,7 +312,7 @@ TEST(Render, ACoveIsNeverBrighterThanItsLight) {
   }
 }
 
-// What the test above would find if materials gained energy.
+// The test above would fail for materials that gain energy.
 TEST(Render, EnergyGainsExplodeInAClosedRoom) {
   Scene scene = SceneFrom(1.0, 60.0, 4);
   AddSphere({0.0, 0.0, 0.0}, 3.0, "gaining", &scene);
@@ -397,7 +397,7 @@ TEST(Render, AsksMaterialsInBatchesAndForNoMoreThanItNeeds) {
   scene.materials.push_back({"unseen", "unseen"});
   Asked fitting, asked;
   CountingBrdf brdf(0.2, &fitting);
-  const ImportanceSampler sampler(brdf);  // asks, too
+  const ImportanceSampler sampler(brdf);  // evaluates it, too
   std::vector<std::string> opened;
   const auto open = [&](const std::string& source) {
     opened.push_back(source);
@@ -439,7 +439,7 @@ TEST(Render, StopsWhenAsked) {
                   }});
   EXPECT_TRUE(rendering.summary.stopped);
   EXPECT_EQ(calls, 20);
-  EXPECT_GE(rendering.summary.samples, 64 * 64);  // the first pass was through
+  EXPECT_GE(rendering.summary.samples, 64 * 64);  // the first pass was finished
   EXPECT_LT(rendering.summary.samples, 64 * 64 * 64);
 }
 

@@ -1,4 +1,4 @@
-// Scene files: what they say, and what is refused and how.
+// Scene files: how they are read, and the errors of bad ones.
 #include "pbnbrdf/render/scene.h"
 
 #include "pbnbrdf/image/exr.h"
@@ -41,7 +41,7 @@ class SceneFile : public testing::Test {
     WriteBytes(folder_ / "scene.json", text);
     return ReadScene(folder_ / "scene.json", changes);
   }
-  // What is said after the file's name, when `from`, which must be in the scene, is replaced.
+  // The error of the scene in which `to` replaces `from`, without the file's name.
   std::string Error(const std::string& from, const std::string& to,
                     const SceneChanges& changes = {}) const {
     std::string text = kScene;

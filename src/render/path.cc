@@ -1,4 +1,4 @@
-#include "vertex.h"
+#include "path.h"
 
 #include <cmath>
 
