@@ -109,6 +109,9 @@ experiments() {
   fi
   shift
   command -v gnuplot > /dev/null || packages="$packages gnuplot-nox"
+  case " $*" in
+    *" --peer="*) packages="$packages libopenblas0-pthread python3-numpy python3-torch" ;;
+  esac
   build "$name"
   "$build/bin/$name" --out_dir="$build/results" "$@"
 }

@@ -23,7 +23,7 @@ const std::string kUsage =
     R"(solver_comparison: held-out error against time of every solver, beside another implementation.
 
   solver_comparison --out_dir=results builtin:satin-gold metal=sgd:parameters.csv#chrome-steel
-  solver_comparison --out_dir=results --peer=peer_train.py --seeds=1,2,3 merl/*.binary
+  solver_comparison --out_dir=results --peer=published_recipe.py --seeds=1,2,3 merl/*.binary
 
 The arguments are materials; without any, a few built-in ones. Each is tabulated as a MERL file, and
 that is what every solver fits, one after the other. Writes solver_comparison.csv, with a row for each

@@ -14,6 +14,7 @@ import argparse
 import json
 import math
 import os
+import pathlib
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -25,11 +26,8 @@ def configure_openblas():
     which kernels to use. One thread, as more are slower with matrices this small. It reads these
     variables when it is loaded."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    try:
-        with open("/proc/cpuinfo") as file:
-            flags = next(line for line in file if line.startswith("flags")).split()
-    except (OSError, StopIteration):
-        return
+    cpuinfo = pathlib.Path("/proc/cpuinfo")
+    flags = cpuinfo.read_text().split() if cpuinfo.exists() else []
     if "avx512bw" in flags and "avx512vl" in flags:
         os.environ.setdefault("OPENBLAS_CORETYPE", "SkylakeX")
     elif "avx2" in flags and "fma" in flags:
@@ -67,9 +65,10 @@ SAMPLE = [INPUTS, 1, 1, 3, 1]
 class MerlTable:
     """A file of the MERL database: the numbers of bins of theta_h, theta_d and phi_d, then f of
     each colour. sqrt(theta_h) is divided evenly; 360 bins of phi_d are the whole circle, and any
-    other number half of it. f is negative where it isn't known."""
+    other number half of it. f is negative where it isn't known; keep = "known" makes it NaN there,
+    and so every value that is interpolated from it."""
 
-    def __init__(self, path):
+    def __init__(self, path, keep="red"):
         try:
             with open(path, "rb") as file:
                 self.bins = [int(bins) for bins in np.fromfile(file, "<i4", 3)]
@@ -81,6 +80,8 @@ class MerlTable:
         if not np.isfinite(stored).all():
             sys.exit(f"{path}: damaged MERL file: not all values are finite numbers")
         self.f = stored.reshape(3, -1).T * [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0]
+        if keep == "known":
+            self.f[self.f.min(1) < 0.0] = np.nan
         self.circle = 2.0 * math.pi if self.bins[2] == 360 else math.pi
 
     def interpolate(self, theta_h, theta_d, phi_d):
@@ -115,7 +116,7 @@ def draw_samples(table, count, reciprocal, rng):
     """Columns as SAMPLE has them, of uniform angles, fewer than count: only where f is known."""
     theta_h, theta_d, phi_d = rng.random((3, count)) * math.pi * [[0.5], [0.5], [2.0]]
     f = table.interpolate(theta_h, theta_d, phi_d).T
-    known = f[0] >= 0.0  # published: red alone says so
+    known = f[0] >= 0.0
     theta_h, theta_d, phi_d, f = theta_h[known], theta_d[known], phi_d[known], f[:, known]
     d = np.sin(theta_d) * np.cos(phi_d), np.sin(theta_d) * np.sin(phi_d), np.cos(theta_d)
     cos_i = np.clip(d[2] * np.cos(theta_h) - d[0] * np.sin(theta_h), 0.0, 1.0)
@@ -293,41 +294,37 @@ class Trainer(torch.nn.Module):
             self.adam()
 
 
-class Epochs:
-    """What Trainer.epoch takes: the samples in a new random order each time, and new directions."""
-
-    def __init__(self, samples, pbnbrdf, seed):
-        self.samples, self.pbnbrdf = samples, pbnbrdf
-        self.rng, self.generator = np.random.default_rng([seed, 2]), torch.Generator()
-        self.generator.manual_seed(seed)
-
-    @torch.inference_mode()
-    def next(self):
-        count = self.samples.size(1)
-        order = torch.randperm(count, generator=self.generator)[:count // BATCH * BATCH]
-        parts = self.samples.index_select(1, order).split(SAMPLE)
-        sets = draw_directions(DIRECTION_SETS, self.rng) if self.pbnbrdf else []
-        return [list(part.split(BATCH, 1)) for part in parts], [list(x.unbind()) for x in sets]
+def epochs(samples, pbnbrdf, seed):
+    """Yields what Trainer.epoch takes: the samples in a new random order, and new directions."""
+    rng, generator = np.random.default_rng([seed, 2]), torch.Generator().manual_seed(seed)
+    count = samples.size(1)
+    while True:
+        with torch.inference_mode():
+            order = torch.randperm(count, generator=generator)[:count // BATCH * BATCH]
+            parts = samples.index_select(1, order).split(SAMPLE)
+            sets = draw_directions(DIRECTION_SETS, rng) if pbnbrdf else []
+            batches = [list(part.split(BATCH, 1)) for part in parts]
+        yield batches, [list(x.unbind()) for x in sets]
 
 
 def train(weights, training, heldout, options):
-    """The trained weights, and of each epoch its number, the seconds of training until its end, and
-    the loss of as many training samples as are held out, and of these. Measuring isn't timed."""
+    """The trained weights, and for each epoch its number, the seconds of training until its end,
+    the loss of some training samples and that of the held-out ones. Measuring isn't timed."""
     pbnbrdf = options.method == "pbnbrdf"
     warm_up = torch.jit.script(Trainer(weights, pbnbrdf))  # compiles what the other one runs
     for _ in range(3):
-        warm_up.epoch(*Epochs(training[:, :2 * BATCH], pbnbrdf, 0).next())
+        warm_up.epoch(*next(epochs(training[:, :2 * BATCH], pbnbrdf, seed=0)))
     trainer = torch.jit.script(Trainer(weights, pbnbrdf))
     trace, seconds, start = [], 0.0, time.perf_counter()
-    epochs = Epochs(training, pbnbrdf, options.seed)
-    upcoming = epochs.next()
+    source = epochs(training, pbnbrdf, options.seed)
+    upcoming = next(source)
     with ThreadPoolExecutor(1) as second_thread:
         for epoch in range(1, options.epochs + 1):
             more, threads = epoch < options.epochs, options.threads > 1
-            job = second_thread.submit(epochs.next) if more and threads else None
+            job = second_thread.submit(next, source) if more and threads else None
             trainer.epoch(*upcoming)
             if more:
-                upcoming = job.result() if job else epochs.next()
+                upcoming = job.result() if job else next(source)
             seconds += time.perf_counter() - start
             if options.trace or not more:
                 seen = training[:, :heldout.size(1)]
@@ -354,6 +351,9 @@ def parse_options():
     parser.add_argument("--trace", help="CSV file for the seconds and losses of each epoch")
     parser.add_argument("--epochs", type=int, default=100)
     parser.add_argument("--samples", type=int, default=800000, help="drawn, known or not")
+    parser.add_argument("--keep", choices=["red", "known"], default="red",
+                        help="red: samples whose interpolated red isn't negative, as published; "
+                        "known: those between known values only")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=2, help="2: one prepares the next epoch")
     options = parser.parse_args()
@@ -368,7 +368,7 @@ def main():
     start = time.perf_counter()
     torch.set_num_threads(1)
     torch.set_flush_denormal(True)
-    table, rng = MerlTable(options.material), np.random.default_rng([options.seed, 1])
+    table, rng = MerlTable(options.material, options.keep), np.random.default_rng([options.seed, 1])
     training_count = round(TRAINING_PART * options.samples)
     training, heldout = [draw_samples(table, count, options.method == "pbnbrdf", rng)
                          for count in (training_count, options.samples - training_count)]
@@ -386,9 +386,10 @@ def main():
     if options.out:
         write_weights(weights, options.out)
     print(json.dumps({
-        "method": options.method, "seed": options.seed, "epochs": options.epochs,
-        "threads": options.threads, "starts": draws, "train_samples": training.size(1),
-        "test_samples": heldout.size(1), "train_loss": train_loss, "test_loss": test_loss,
+        "method": options.method, "keep": options.keep, "seed": options.seed,
+        "epochs": options.epochs, "threads": options.threads, "starts": draws,
+        "train_samples": training.size(1), "test_samples": heldout.size(1),
+        "train_loss": train_loss, "test_loss": test_loss,
         "train_seconds": seconds, "other_seconds": time.perf_counter() - start - seconds,
         "torch": torch.__version__, "kernels": os.environ.get("OPENBLAS_CORETYPE", "")}, indent=1))
 
