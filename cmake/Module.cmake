@@ -1,6 +1,6 @@
 # Warnings and sanitizers are a target; -Werror is for CI.
 add_library(pbnbrdf_warnings INTERFACE)
-target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-restrict
+target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wno-restrict
                        $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
 if(PBNBRDF_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -33,6 +33,7 @@ function(pbnbrdf_module name)
     set(scope PUBLIC)
     add_library(pbnbrdf_${name} STATIC ${sources})
     target_link_libraries(pbnbrdf_${name} PRIVATE $<BUILD_INTERFACE:pbnbrdf_warnings>)
+    target_compile_options(pbnbrdf_${name} PRIVATE -Wconversion)
   else()
     set(scope INTERFACE)
     add_library(pbnbrdf_${name} INTERFACE)
