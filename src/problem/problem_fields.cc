@@ -64,7 +64,7 @@ Fields NetworkFields(NetworkOptions* network) {
   fields.Group("The network");
   fields.AddCommon(ChoiceOrAuto("encoding", &network->encoding, kEncodings,
                                 "inputs of the network; auto: what suits the material"));
-  fields.AddCommon(Integers("hidden", &network->hidden, Between(1, NetworkShape::kLargestLayer),
+  fields.AddCommon(Integers("hidden", &network->hidden, Between(1, NetworkShape::kMaxLayerSize),
                             "sizes of the hidden layers"));
   fields.Add(
       Choice("activation", &network->activation, kActivations, "function of the hidden units"));
