@@ -18,7 +18,7 @@ double Azimuth(double y, double x) {
 
 HalfDiff ToHalfDiff(const DirectionPair& pair) {
   const auto& [wi, wo] = pair;
-  const auto v = HalfDiffOfPair<double>({wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z});
+  const auto v = HalfDiffFromPair<double>({wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z});
   return {{v.hx, v.hy, v.cos_theta}, {v.dx, v.dy, v.dz}};
 }
 

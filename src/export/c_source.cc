@@ -23,7 +23,7 @@ constexpr std::string_view kSource = R"(/* @about@.
 #include <math.h>
 
 @weights@
-/* The six inputs of the network. Exchanging wi and wo changes but the signs of dx and dy. */
+/* The six inputs of the network. Exchanging wi and wo only changes the signs of dx and dy. */
 static inline void @name@_encode(const double wi[3], const double wo[3], double x[6]) {
 @encode@}
 

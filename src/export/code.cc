@@ -11,14 +11,14 @@ namespace {
 using Kind = Term::Kind;
 using Vector = std::array<Term, 3>;
 
-// How tightly a text holds together.
+// What kind of expression a text is, from the loosest to the one that never needs parentheses.
 enum class Binding { kTernary, kSum, kProduct, kAtom };
 
 struct Text {
   std::string text;
   Binding binding;
 
-  // In parentheses unless it holds together at least as tightly as asked for.
+  // In parentheses if it is looser than `least`.
   std::string Bound(Binding least) const { return binding < least ? "(" + text + ")" : text; }
 };
 
@@ -70,9 +70,8 @@ class Printer {
       const char symbol = "+-*/"[static_cast<int>(node.kind)];
       return {StrCat(operands[0].Bound(left), " ", symbol, " ", operands[1].Bound(right)), left};
     }
-    const std::string_view pattern =
-        language_
-            .functions[static_cast<std::size_t>(node.kind) - static_cast<std::size_t>(Kind::kMax)];
+    constexpr int kFirst = static_cast<int>(Kind::kMax);
+    const std::string_view pattern = language_.functions[static_cast<int>(node.kind) - kFirst];
     const bool is_if = node.kind == Kind::kIfGreater;
     std::vector<std::string> texts;
     for (const Text& text : operands) {
@@ -115,7 +114,7 @@ std::string PrintExpression(const Language& language, const Term& term) {
 Code PrintInputs(const Language& language, Encoding encoding) {
   const Vector wi = Components(language, "wi"), wo = Components(language, "wo");
   Vector sum = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
-  HalfDiffOf<Term> v = ToHalfDiffOf<Term>(sum, {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
+  HalfDiffOf<Term> v = HalfDiffFromSum<Term>(sum, {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
   const std::pair<Term*, const char*> names[] = {{&sum[0], "sum_x"},
                                                  {&sum[1], "sum_y"},
                                                  {&sum[2], "sum_z"},

@@ -16,7 +16,7 @@ constexpr std::string_view kSource = R"(// @about@.
 //
 // wi points to the light, wo to the viewer: unit vectors, normal +z. The value is linear RGB in
 // 1/sr, without the cosine; 0 where a direction isn't above the horizon. GLSL ES 3.00 or later.
-// What follows in the shader is highp too, unless it says otherwise.
+// Sets the default precision to highp, also for what follows in the shader.
 precision highp float;
 precision highp int;
 
@@ -49,7 +49,7 @@ float @name@_angle(float sine, float cosine) {
   return t * (@two_atan_polynomial@);
 }
 
-// The six inputs of the network. Exchanging wi and wo changes but the signs of dx and dy.
+// The six inputs of the network. Exchanging wi and wo only changes the signs of dx and dy.
 void @name@_encode(vec3 wi, vec3 wo, out vec4 x0, out vec4 x1) {
 @encode@}
 

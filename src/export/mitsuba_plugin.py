@@ -60,6 +60,9 @@ class Network:
         metadata, tensors = read_safetensors(path)
         if metadata.get("format") != "pbnbrdf" or metadata.get("output") != "expm1":
             raise ValueError(f"{path}: not a network of pbnbrdf")
+        if metadata["encoding"] not in ENCODINGS:
+            raise ValueError(f"{path}: encoding={metadata['encoding']} is not one of "
+                             + " | ".join(ENCODINGS))
         self.encode, self.is_isotropic = ENCODINGS[metadata["encoding"]]
         self.activate = ACTIVATIONS[metadata["activation"]]
         self.layers = []  # lists of (row of W, bias)

@@ -94,7 +94,7 @@ std::string OnnxModel(const NeuralBrdf& fitted) {
   const auto wi = Components(&graph, "wi"), wo = Components(&graph, "wo");
   const Term zeros = 0.0 * wi[0];  // makes N x 1 of a constant
   std::vector<Term> inputs;
-  for (const Term& x : Encode(shape.encoding(), HalfDiffOfPair(wi, wo))) {
+  for (const Term& x : Encode(shape.encoding(), HalfDiffFromPair(wi, wo))) {
     inputs.push_back(x.node().kind == Kind::kConstant ? x + zeros : x);
   }
   Names names;

@@ -28,11 +28,11 @@ void VectorLogResiduals(const double* z, const double* targets, const double* co
     const V cos = hn::LoadU(d, cos_i + k % kBatch);
     const V f = hn::Expm1(d, x);
     const V u = hn::Mul(f, cos);
-    // The functions above take neither what overflows nor what isn't finite.
+    // Expm1 and Log1p are undefined where x overflows or isn't finite.
     const V overflow = hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 706.0)), hn::Set(d, kInfinity));
     const V log = hn::Add(hn::MulAdd(hn::Zero(d), x, overflow), hn::Log1p(d, u));
     const V slope = hn::Div(hn::Mul(hn::Add(f, one), cos), hn::Add(u, one));
-    // At normal incidence log1p(expm1(x)) is x; computed, it is the logarithm of 0 from -37 down.
+    // At normal incidence log1p(expm1(x)) is x. Computed, it is the logarithm of 0 for x < -37.
     const auto normal = hn::Eq(cos, one);
     const V exact_log = hn::IfThenElse(normal, x, log);
     hn::StoreU(hn::Sub(hn::LoadU(d, targets + k), exact_log), d, residuals + k);

@@ -4,7 +4,7 @@ namespace pbnbrdf {
 
 Inputs<double> Encode(Encoding encoding, const DirectionPair& pair) {
   const auto& [wi, wo] = pair;
-  return Encode(encoding, HalfDiffOfPair<double>({wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z}));
+  return Encode(encoding, HalfDiffFromPair<double>({wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z}));
 }
 
 }  // namespace pbnbrdf

@@ -65,7 +65,7 @@ HWY_FLATTEN void EncodeAll(const double* pairs, float* inputs, Expression expres
   const int lanes = static_cast<int>(hn::Lanes(F()));
   for (int n = 0; n < kBatch; n += lanes) {
     const auto [sum, difference] = AddAndSubtract(pairs + 6 * n);
-    const Inputs<V> encoded = expression(ToHalfDiffOf(sum, difference));
+    const Inputs<V> encoded = expression(HalfDiffFromSum(sum, difference));
     for (int i = 0; i < kEncodedSize; ++i) hn::StoreU(encoded[i].v, F(), inputs + i * kBatch + n);
   }
 }

@@ -45,7 +45,7 @@ HWY_INLINE V IfGreater(V a, V b, V yes, V no) {
   return hn::IfThenElse(hn::Gt(a.v, b.v), yes.v, no.v);
 }
 
-// The inverse is 0 below 1e-18, where the square of a length is denormal.
+// The inverse is 0 for x < 1e-36: the squares of such lengths are hardly more than denormal.
 HWY_INLINE Roots<V> ToRoots(V x) {
   constexpr double kTiny = 1e-36;
   if constexpr (math::kHas14BitReciprocals) {

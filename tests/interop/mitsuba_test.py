@@ -4,7 +4,8 @@ weights_test.py compares with the library, densities against samples, and a rend
 import importlib
 import sys
 
-from common import all_networks, check, directions, np, path, program, require
+from common import all_networks, check, directions, np, path, program, random_layers, require
+from common import write_network
 import reference
 
 mi, = require("mitsuba")
@@ -192,6 +193,17 @@ def check_modes():
         assert "RGB or monochromatic" in str(error), error
 
 
+def check_unknown_encoding():
+    """A file that names an encoding of another version."""
+    file = path("old.safetensors")
+    write_network(file, random_layers([3], 1), "bilateral", "tanh")
+    try:
+        mi.load_dict({"type": "pbnbrdf", "filename": file})
+        sys.exit("FAILED: the plugin takes an encoding that it doesn't know")
+    except RuntimeError as error:
+        assert "encoding=bilateral is not one of cartesian | " in str(error), error
+
+
 program("fit", "--material=builtin:satin-gold", "--samples=1000", "--max_iterations=20",
         "--terms=log", f"--out={GOLD}")
 program("export", f"--fit={GOLD}", "--format=mitsuba", f"--out={path('gold.py')}")
@@ -210,6 +222,7 @@ check_samples("gold", mi.load_dict({"type": "pbnbrdf"}), reference.read(GOLD))
 
 import_plugin("scalar_rgb", "gold")
 check_scalar_values("gold", GOLD)
+check_unknown_encoding()
 for name, _, file in networks:
     check_scalar_values(name, file)
 check_render()

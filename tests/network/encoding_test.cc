@@ -121,8 +121,8 @@ using PairJet = ceres::Jet<double, 6>;
 Inputs<PairJet> EncodeJets(Encoding encoding, const DirectionPair& pair) {
   const auto& [wi, wo] = pair;
   return Encode(encoding,
-                HalfDiffOfPair<PairJet>({PairJet(wi.x, 0), PairJet(wi.y, 1), PairJet(wi.z, 2)},
-                                        {PairJet(wo.x, 3), PairJet(wo.y, 4), PairJet(wo.z, 5)}));
+                HalfDiffFromPair<PairJet>({PairJet(wi.x, 0), PairJet(wi.y, 1), PairJet(wi.z, 2)},
+                                          {PairJet(wo.x, 3), PairJet(wo.y, 4), PairJet(wo.z, 5)}));
 }
 
 // The pair with one of its six components moved.

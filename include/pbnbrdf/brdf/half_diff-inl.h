@@ -14,7 +14,7 @@ struct HalfDiffOf {
 
 // sum = wi + wo, difference = wi - wo. Where the sum is 0, h = +z; where h = +z, phi_h = 0.
 template <class V>
-HalfDiffOf<V> ToHalfDiffOf(const std::array<V, 3>& sum, const std::array<V, 3>& difference) {
+HalfDiffOf<V> HalfDiffFromSum(const std::array<V, 3>& sum, const std::array<V, 3>& difference) {
   const auto [length, per_length] = ToRoots(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
   const V hx = per_length * sum[0], hy = per_length * sum[1];
   const V hz = IfGreater(per_length, V(0.0), per_length * sum[2], V(1.0));

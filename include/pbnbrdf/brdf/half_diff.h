@@ -19,9 +19,9 @@ namespace pbnbrdf {
 
 // Of the components of wi and wo.
 template <class V>
-HalfDiffOf<V> HalfDiffOfPair(const std::array<V, 3>& wi, const std::array<V, 3>& wo) {
-  return ToHalfDiffOf<V>({wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]},
-                         {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
+HalfDiffOf<V> HalfDiffFromPair(const std::array<V, 3>& wi, const std::array<V, 3>& wo) {
+  return HalfDiffFromSum<V>({wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]},
+                            {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
 }
 
 struct HalfDiff {

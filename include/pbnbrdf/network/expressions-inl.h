@@ -73,7 +73,7 @@ Inputs<V> AnisotropicInputs(const HalfDiffOf<V>& v) {
 }
 
 // The output unit where a network is evaluated: expm1(z), clamped to [0, Brdf::kLargestValue]; 0 where
-// z is not a number. Never takes expm1 of what single precision can't hold: expm1(30) = 1.07e13.
+// z is not a number. expm1(30) = 1.07e13 is above the limit, and single precision still holds it.
 template <class V>
 V ClampedReflectance(const V& z) {
   const V positive = IfGreater(z, V(0.0), z, V(0.0));
