@@ -93,7 +93,7 @@ struct ImageError {
   double rmse, flip;
 };
 
-// How paths leave materials, by their source. Kept, since it takes a second to find out for anisotropic ones.
+// How paths leave materials, by their source. Of anisotropic ones it takes a second to find out.
 using Proposals = std::map<std::string, LobeProposal>;
 
 // A material in a scene: the image of the material itself, and those of networks in its place.

@@ -1,5 +1,6 @@
 // stability.cc: thousands of small fits, many of them to what no fit should be asked for: what isn't
 // finite, what fails and how far a gradient is from numeric differences.
+#include <sys/time.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -33,13 +34,14 @@ constexpr char kUsage[] =
 A run has a level of each of these factors: material, stress, solver, loss, terms, encoding, precision,
 activation, initialization, sampling and seed. Of 16 random combinations each run takes the one with
 the most pairs of levels that haven't appeared yet; the report says how many have. Runs are done in
-processes of their own, several at a time: one that crashes, or that takes longer than two minutes,
-costs no other run. Writes stability.csv, a row for each run, and stability.md.
+processes of their own, several at a time: one that crashes, or that takes more than two minutes of a
+core, costs no other run. Writes stability.csv, a row for each run, and stability.md.
 )";
 
-constexpr int kChunk = 25;          // runs of a process
-constexpr unsigned kTimeout = 120;  // seconds of a run
-constexpr int kSignalStatus = 128;  // of a process that a signal ended, plus the signal
+constexpr int kChunk = 25;              // runs of a process
+constexpr int kMaxCpuSeconds = 120;     // of a run; the slowest known takes about half of it
+constexpr unsigned kMaxSeconds = 1200;  // of a run, for one that waits for ever
+constexpr int kSignalStatus = 128;      // of a process that a signal ended, plus the signal
 
 struct Options {
   int runs = 5000;
@@ -72,6 +74,17 @@ std::vector<std::string> FactorNames(const StabilitySweep& sweep) {
   return names;
 }
 
+// Ends this process by a signal when the limits are over, unless it is called again.
+void RestartTimeout() {
+  const itimerval limit = {.it_interval = {}, .it_value = {.tv_sec = kMaxCpuSeconds, .tv_usec = 0}};
+  setitimer(ITIMER_PROF, &limit, nullptr);
+  alarm(kMaxSeconds);
+}
+
+bool IsTimeout(int status) {
+  return status == kSignalStatus + SIGPROF || status == kSignalStatus + SIGALRM;
+}
+
 // Does its runs, and writes a row for each to standard output.
 void RunChunk(const Options& options) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
@@ -80,7 +93,7 @@ void RunChunk(const Options& options) {
     const StabilityCase next = sweep.Next();
     if (run < options.first_run) continue;
     if (run == options.crash_at) std::abort();
-    alarm(kTimeout);
+    RestartTimeout();
     StabilityRecord record = RunStabilityCase(next);
     record.run = run;
     std::cout << CsvLine(RecordCells(record)) << std::flush;
@@ -171,7 +184,7 @@ class Sweep {
     StabilityRecord record;
     record.run = run;
     record.levels = cases_[static_cast<std::size_t>(run)].levels;
-    record.outcome = status == kSignalStatus + SIGALRM ? "timeout" : "crash";
+    record.outcome = IsTimeout(status) ? "timeout" : "crash";
     record.message = StrCat("process ended with status ", status);
     Add(record);
   }

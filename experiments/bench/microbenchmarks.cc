@@ -3,7 +3,7 @@
 //   build/bin/microbenchmarks --benchmark_filter=Linearize
 //
 // items_per_second counts samples, or pairs of directions where nothing is fitted. What is mostly matrix
-// products reports GFLOP/s, and of_product: that rate as a part of the rate of Eigen's products on one core.
+// products reports GFLOP/s and of_product, that rate over the rate of Eigen's products on one core.
 #include <benchmark/benchmark.h>
 #include <ceres/problem.h>
 #include <hwy/targets.h>
@@ -132,8 +132,8 @@ void BM_NormalEquations(benchmark::State& state) {
 }
 BENCHMARK(BM_NormalEquations)->Unit(benchmark::kMicrosecond);
 
-// J'J, J'r and the cost of all samples. Args: units of each of the two hidden layers, samples, threads, 1 for
-// double precision.
+// J'J, J'r and the cost of all samples. Args: units of each of the two hidden layers, samples, threads, and
+// 1 for double precision.
 void BM_Linearize(benchmark::State& state) {
   const int width = static_cast<int>(state.range(0));
   const Fixture fixture(static_cast<std::size_t>(state.range(1)), {width, width});
@@ -153,7 +153,7 @@ void BM_Linearize(benchmark::State& state) {
 }
 BENCHMARK(BM_Linearize)
     ->ArgNames({"hidden", "samples", "threads", "double"})
-    ->Args({21, 1000, 1, 0})
+    ->Args({21, 2000, 1, 0})
     ->Args({21, 20000, 1, 0})
     ->Args({21, 20000, 2, 0})
     ->Args({21, 20000, 1, 1})

@@ -24,8 +24,8 @@ inline constexpr NameTable<DerivativeMethod, 3> kDerivativeMethods = {
 // Fills a Linearization at the given weights: cost, J'r and, in its lower triangle, J'J.
 using Evaluation = std::function<void(const double* weights, Linearization* at)>;
 
-// To be called by one thread at a time. problem: with the log term alone, its loss not absolute. Autodiff is
-// in double precision, the others are in single.
+// To be called by one thread at a time. problem: with the log term alone, its loss not absolute. Autodiff
+// is in double precision, the others are in single.
 Evaluation MakeEvaluation(DerivativeMethod method, const FitProblem& problem,
                           std::span<const BrdfSample> samples);
 

@@ -7,8 +7,8 @@
 
 namespace pbnbrdf {
 
-// The scene of a file, with a film of the given width, at least kSsimWindow, and the same proportions, but at
-// least as high as images that are compared must be. environment: SceneChanges::environment. Throws Error
+// The scene of a file, with a film of the given width, at least kSsimWindow, and the same proportions, but
+// at least as high as images that are compared must be. environment: SceneChanges::environment. Throws Error
 // as ReadScene does.
 Scene ReadSmallScene(const std::string& path, const std::string& environment, int width);
 

