@@ -154,8 +154,9 @@ TEST(ColorErrors, OfConstantColoursAreTheirDifference) {
 }
 
 TEST(ColorErrors, WithoutDarkSamplesTheirsAreZero) {
-  const ColorErrors errors = MeasureColorErrors(EvenlyLitBrdf({0.2, 0.2, 0.2}),
-                                                EvenlyLitBrdf({0.3, 0.2, 0.2}), 100, /*seed=*/1);
+  const ColorErrors errors =
+      MeasureColorErrors(HeldOutSamples(EvenlyLitBrdf({0.2, 0.2, 0.2}), 100, /*seed=*/1),
+                         EvenlyLitBrdf({0.3, 0.2, 0.2}));
   EXPECT_GT(errors.delta_e_mean, 1.0);
   EXPECT_EQ(errors.dark_samples, 0u);
   EXPECT_EQ(errors.dark_hue_chroma_mean, 0.0);
@@ -163,8 +164,9 @@ TEST(ColorErrors, WithoutDarkSamplesTheirsAreZero) {
 }
 
 TEST(ColorErrors, BeyondWhiteADisplayShowsNoDifference) {
-  const ColorErrors errors = MeasureColorErrors(EvenlyLitBrdf({1.1, 1.5, 1e9}),
-                                                EvenlyLitBrdf({2.0, 1.1, 3.0}), 100, /*seed=*/1);
+  const ColorErrors errors =
+      MeasureColorErrors(HeldOutSamples(EvenlyLitBrdf({1.1, 1.5, 1e9}), 100, /*seed=*/1),
+                         EvenlyLitBrdf({2.0, 1.1, 3.0}));
   EXPECT_EQ(errors.delta_e_p95, 0.0);
 }
 

@@ -68,7 +68,8 @@ TEST_P(EnergyConservationTest, IsConservedWhereTheMaterialDoesNot) {
   options.schedule.max_iterations = options.solver == "ceres_lbfgs" ? 1000 : 200;
   const Fit fit = FitBrdf(*too_bright, problem, options);
   const EnergySummary& energy = fit.summary.energy;
-  EXPECT_LE(MeasureEnergy(fit.network).max_directional_albedo, 1.0 + 1e-6);
+  // With three times the nodes of the usual check, which is off by 2e-4 for one of these networks.
+  EXPECT_LE(MeasureEnergy(fit.network, {.n_theta = 6}).max_directional_albedo, 1.0 + 1e-6);
   EXPECT_NEAR(AlbedoOf(fit.network), std::min(AlbedoOf(*too_bright), 1.0), 0.05);
   EXPECT_GT(energy.first_max_albedo, 1.1);
   EXPECT_GT(energy.rounds, 0);
