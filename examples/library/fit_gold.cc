@@ -1,6 +1,6 @@
-#include <iostream>
 #include <pbnbrdf/models/builtin.h>
 #include <pbnbrdf/solve/fit.h>
+#include <iostream>
 
 int main(int argc, char** argv) {
   const auto material = pbnbrdf::MakeBuiltin("satin-gold");

@@ -9,8 +9,8 @@
 //     Functions. SIGGRAPH 1997.
 #pragma once
 
-#include "pbnbrdf/models/model_parameter.h"
 #include "pbnbrdf/brdf/reflection_geometry.h"
+#include "pbnbrdf/models/model_parameter.h"
 
 namespace pbnbrdf {
 

@@ -13,8 +13,8 @@
 // [3] J. Blinn. Models of Light Reflection for Computer Synthesized Pictures. SIGGRAPH 1977.
 #pragma once
 
-#include "pbnbrdf/models/model_parameter.h"
 #include "pbnbrdf/brdf/reflection_geometry.h"
+#include "pbnbrdf/models/model_parameter.h"
 
 namespace pbnbrdf {
 

@@ -6,8 +6,8 @@
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
-#include "pbnbrdf/sources/sgd_file.h"
 #include "pbnbrdf/sources/merl.h"
+#include "pbnbrdf/sources/sgd_file.h"
 
 namespace pbnbrdf {
 namespace {

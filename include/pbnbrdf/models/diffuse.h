@@ -5,8 +5,8 @@
 #pragma once
 
 #include "pbnbrdf/brdf/brdf.h"
-#include "pbnbrdf/models/model_parameter.h"
 #include "pbnbrdf/brdf/reflection_geometry.h"
+#include "pbnbrdf/models/model_parameter.h"
 
 namespace pbnbrdf {
 

@@ -14,8 +14,8 @@
 
 #include "pbnbrdf/brdf/brdf.h"
 #include "pbnbrdf/brdf/lobe_widths.h"
-#include "pbnbrdf/models/model_parameter.h"
 #include "pbnbrdf/brdf/reflection_geometry.h"
+#include "pbnbrdf/models/model_parameter.h"
 
 namespace pbnbrdf {
 

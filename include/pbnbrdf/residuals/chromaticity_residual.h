@@ -14,8 +14,9 @@ namespace pbnbrdf {
 //   residuals T[1], unitless.
 class ChromaticityResidual {
  public:
-  static constexpr std::string_view kName = "chromaticity", kHelp = "colour, eq. 7";
-  static constexpr double kDefaultWeight = 0.1;  // the least error of colour (experiments/README.md)
+  static constexpr std::string_view kName = "chromaticity", kHelp = "eq. 7";
+  static constexpr double kDefaultWeight =
+      0.1;  // the least error of colour (experiments/README.md)
   static constexpr bool kNeedsColor = true;
   static constexpr int kNumResiduals = 1;
 

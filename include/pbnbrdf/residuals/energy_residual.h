@@ -15,7 +15,7 @@ namespace pbnbrdf {
 //   residuals T[3], unitless.
 class EnergyResidual {
  public:
-  static constexpr std::string_view kName = "energy", kHelp = "no more light out than in, eq. 5";
+  static constexpr std::string_view kName = "energy", kHelp = "eq. 5";
   static constexpr double kDefaultWeight = 1.0;
   static constexpr int kNumResiduals = 3;
 

@@ -14,7 +14,7 @@ namespace pbnbrdf {
 //   residuals T[3], unitless.
 class LogResidual {
  public:
-  static constexpr std::string_view kName = "log", kHelp = "log(1 + f cos_i), eq. 6";
+  static constexpr std::string_view kName = "log", kHelp = "eq. 6";
   static constexpr double kDefaultWeight = 1.0;
   static constexpr bool kNeedsColor = false;  // whether it says nothing of a single channel
   static constexpr int kNumResiduals = 3;
