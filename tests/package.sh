@@ -16,8 +16,8 @@ rm -rf "$3/package_test"
 # The README shows this very program.
 awk '/^```cpp/ {inside = 1; next} /^```/ {inside = 0} inside' "$2/README.md" > "$build/readme.cc"
 diff "$build/readme.cc" "$2/examples/library/fit_gold.cc"
-# Every public header stands alone.
-for header in $(cd "$prefix/include" && find pbnbrdf -name '*.h' | sort); do
+# Every public header stands alone, but for those that others include into a namespace.
+for header in $(cd "$prefix/include" && find pbnbrdf -name '*.h' ! -name '*-inl.h' | sort); do
   echo "#include <$header>"
   echo "#include <$header>" > "$build/header.cc"
   c++ -std=c++20 -fsyntax-only -I"$prefix/include" -isystem /usr/include/eigen3 "$build/header.cc"

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <numbers>
 
-#include "pbnbrdf/brdf/merl_rows.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/brdf/half_diff.h"
+#include "pbnbrdf/brdf/merl_rows.h"
 
 namespace pbnbrdf {
 namespace {
