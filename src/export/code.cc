@@ -115,17 +115,11 @@ Code PrintInputs(const Language& language, Encoding encoding) {
   const Vector wi = Components(language, "wi"), wo = Components(language, "wo");
   Vector sum = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
   HalfDiffOf<Term> v = HalfDiffFromSum<Term>(sum, {wi[0] - wo[0], wi[1] - wo[1], wi[2] - wo[2]});
-  const std::pair<Term*, const char*> names[] = {{&sum[0], "sum_x"},
-                                                 {&sum[1], "sum_y"},
-                                                 {&sum[2], "sum_z"},
-                                                 {&v.sin_theta, "sin_theta_h"},
-                                                 {&v.cos_theta, "cos_theta_h"},
-                                                 {&v.sin_phi, "sin_phi_h"},
-                                                 {&v.cos_phi, "cos_phi_h"},
-                                                 {&v.dx, "dx"},
-                                                 {&v.dy, "dy"},
-                                                 {&v.dz, "dz"}};
-  for (const auto& [term, name] : names) term->SetName(name);
+  const std::array terms = {&sum[0],    &sum[1],    &sum[2], &v.sin_theta, &v.cos_theta,
+                            &v.sin_phi, &v.cos_phi, &v.dx,   &v.dy,        &v.dz};
+  const std::array names = {"sum_x",     "sum_y",     "sum_z", "sin_theta_h", "cos_theta_h",
+                            "sin_phi_h", "cos_phi_h", "dx",    "dy",          "dz"};
+  for (std::size_t i = 0; i < terms.size(); ++i) terms[i]->SetName(names[i]);
   const Inputs<Term> inputs = Encode(encoding, v);
   return PrintTerms(language, {inputs.begin(), inputs.end()});
 }

@@ -94,27 +94,24 @@ std::string EncodeBody(Encoding encoding) {
 
 int Quads(int count) { return (count + 3) / 4; }
 
-// An element of W, or of b in column `in`; 0 below the last row.
-std::string Weight(const LayerWeights& layer, int row, int column) {
-  return row < layer.out ? Literal(SinglePrecision(layer.weight(row, column))) : "0.0";
-}
-
-// "vec4(...)", the biases of the four units from `row`.
-std::string Bias(const LayerWeights& layer, int row) {
+// Four numbers: the weights of the units from `row` for input `column`, or their biases in column `in`; 0
+// where there is no unit or input.
+std::string Column(const LayerWeights& layer, int row, int column) {
   std::vector<std::string> numbers;
-  for (int i = row; i < row + 4; ++i) numbers.push_back(Weight(layer, i, layer.in));
-  return StrCat("vec4(", ListText(numbers), ")");
+  for (int i = row; i < row + 4; ++i) {
+    const bool exists = i < layer.out && column <= layer.in;
+    numbers.push_back(exists ? Literal(SinglePrecision(layer.weight(i, column))) : "0.0");
+  }
+  return ListText(numbers);
 }
 
 // "mat4(...)", what takes the four values from `column` to the four units; column by column.
 std::string Matrix(const LayerWeights& layer, int row, int column) {
-  std::vector<std::string> numbers;
+  std::vector<std::string> columns;
   for (int j = column; j < column + 4; ++j) {
-    for (int i = row; i < row + 4; ++i) {
-      numbers.push_back(j < layer.in ? Weight(layer, i, j) : "0.0");
-    }
+    columns.push_back(Column(layer, row, j < layer.in ? j : layer.in + 1));
   }
-  return StrCat("mat4(", ListText(numbers), ")");
+  return StrCat("mat4(", ListText(columns), ")");
 }
 
 // The vectors x<l+1>_0, x<l+1>_1, ... from x<l>_0, x<l>_1, ..., or z from the last ones.
@@ -123,7 +120,7 @@ std::string Pass(const LayerWeights& layer, int l) {
   for (int o = 0; o < Quads(layer.out); ++o) {
     const std::string to =
         layer.hidden ? StrCat("x", l + 1, "_", o, " = @name@_activate(") : "z = ";
-    text += StrCat("  vec4 ", to, Bias(layer, 4 * o));
+    text += StrCat("  vec4 ", to, "vec4(", Column(layer, 4 * o, layer.in), ")");
     for (int i = 0; i < Quads(layer.in); ++i) {
       text += StrCat("\n      + ", Matrix(layer, 4 * o, 4 * i), " * x", l, "_", i);
     }

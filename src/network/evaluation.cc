@@ -21,21 +21,17 @@ using Vector3 = std::array<V, 3>;
 #include "pbnbrdf/brdf/half_diff-inl.h"
 #include "pbnbrdf/network/expressions-inl.h"
 
-// The sums and the differences of the two vectors of Lanes(F()) direction pairs.
-struct SumsAndDifferences {
-  Vector3 sum, difference;
-};
-
-// Computed in double precision, then rounded to single: near the mirror direction most digits cancel
-// in the sum, and theta_h depends on those that remain. pairs: the components of wi, wo, wi, ...
+// The sum and the difference of the two vectors of Lanes(F()) direction pairs. pairs: the components of
+// wi, wo, wi, ... Computed in double precision, then rounded to single: near the mirror direction most digits cancel
+// in the sum, and theta_h depends on those that remain.
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE SumsAndDifferences AddAndSubtract(const double* pairs) {
+HWY_INLINE std::array<Vector3, 2> AddAndSubtract(const double* pairs) {
   const auto sum = [&](int i) HWY_ATTR { return V(pairs[i] + pairs[3 + i]); };
   const auto difference = [&](int i) HWY_ATTR { return V(pairs[i] - pairs[3 + i]); };
-  return {{sum(0), sum(1), sum(2)}, {difference(0), difference(1), difference(2)}};
+  return {{{sum(0), sum(1), sum(2)}, {difference(0), difference(1), difference(2)}}};
 }
 #else
-HWY_INLINE SumsAndDifferences AddAndSubtract(const double* pairs) {
+HWY_INLINE std::array<Vector3, 2> AddAndSubtract(const double* pairs) {
   const F d;
   const hn::ScalableTag<double> dd;
   const hn::Rebind<float, decltype(dd)> half;
@@ -56,7 +52,7 @@ HWY_INLINE SumsAndDifferences AddAndSubtract(const double* pairs) {
   const auto high = [&](int i) HWY_ATTR { return hn::Combine(d, mixed[i][3], mixed[i][2]); };
   const auto sum = [&](int i) HWY_ATTR { return V(hn::ConcatEven(d, high(i), low(i))); };
   const auto difference = [&](int i) HWY_ATTR { return V(hn::ConcatOdd(d, high(i), low(i))); };
-  return {{sum(0), sum(1), sum(2)}, {difference(0), difference(1), difference(2)}};
+  return {{{sum(0), sum(1), sum(2)}, {difference(0), difference(1), difference(2)}}};
 }
 #endif
 

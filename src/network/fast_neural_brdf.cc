@@ -7,11 +7,8 @@
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
-namespace {
 
 using kernels::kBatch;
-
-}  // namespace
 
 FastNeuralBrdf::FastNeuralBrdf(const NeuralBrdf& network)
     : shape_(network.shape()),

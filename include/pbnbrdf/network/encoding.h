@@ -76,6 +76,9 @@ Inputs<V> Encode(Encoding encoding, const HalfDiffOf<V>& v) {
   Fail("encoding ", static_cast<int>(encoding), " is not in the table");
 }
 
-Inputs<double> Encode(Encoding encoding, const DirectionPair& pair);
+inline Inputs<double> Encode(Encoding encoding, const DirectionPair& pair) {
+  const auto& [wi, wo] = pair;
+  return Encode(encoding, HalfDiffFromPair<double>({wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z}));
+}
 
 }  // namespace pbnbrdf
