@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <functional>
 #include <optional>
 
 #include "experiment.h"
@@ -13,10 +12,10 @@
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/metrics/flip.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "pbnbrdf/render/render.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "problems.h"
 #include "small_scene.h"
+#include "studio.h"
 #include "table.h"
 
 namespace pbnbrdf {
@@ -140,31 +139,11 @@ Image Exposed(Image image, double exposure) {
   return image;
 }
 
-// Renders the scene with the material or a network in its place, always along paths that suit the material.
-class Studio {
- public:
-  Studio(const Scene& scene, const Brdf& material, const Options& options)
-      : scene_(scene), proposal_(FitLobeProposal(material)) {
-    options_.samples_per_pixel = options.samples_per_pixel;
-    options_.threads = options.threads;
-  }
-
-  Image Photograph(const std::function<std::unique_ptr<Brdf>()>& make) const {
-    const auto open = [&](const std::string&) { return OpenedMaterial{make(), proposal_}; };
-    return Render(scene_, open, options_).image;
-  }
-
- private:
-  const Scene& scene_;
-  LobeProposal proposal_;
-  RenderOptions options_;
-};
-
 // A row of the picture, and two of the table.
 Image RunMaterial(const Scene& scene, const MaterialSource& source, const Options& options,
                   Table* table) {
   const std::unique_ptr<Brdf> material = OpenBrdf(source.source);
-  const Studio studio(scene, *material, options);
+  const Studio studio(scene, *material, options.samples_per_pixel, options.threads);
   const Image reference = studio.Photograph([&] { return OpenBrdf(source.source); });
   const double exposure = DisplayExposure(reference);
   const Image exposed_reference = Exposed(reference, exposure);

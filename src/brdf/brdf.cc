@@ -8,6 +8,7 @@ void Brdf::Evaluate(std::span<const DirectionPair> pairs, std::span<Rgb> values)
   EvaluateUnclipped(pairs, values);
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     if (!pairs[n].AboveHorizon()) values[n] = {};
+    for (double& value : values[n]) value = value < 0.0 ? 0.0 : value;  // NaN stays
   }
 }
 

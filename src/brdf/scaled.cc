@@ -43,6 +43,11 @@ std::vector<BrdfSample> ScaledBrdf::Measurements() const {
   return samples;
 }
 
+std::unique_ptr<Brdf> ScaledBrdf::BestEstimate() const {
+  std::unique_ptr<Brdf> best = source_->BestEstimate();
+  return best ? std::make_unique<ScaledBrdf>(std::move(best), factor_) : nullptr;
+}
+
 void ScaledBrdf::Scale(Rgb* value) const {
   for (double& channel : *value) channel = std::min(channel * factor_, kLargestValue);
 }

@@ -22,6 +22,7 @@ Fields EvalFields(EvalOptions* options) {
   Fields fields;
   fields.AddRequired(MaterialField(&options->material));
   fields.AddCommon(ScaleField(&options->material));
+  fields.AddCommon(SymmetrizeField(&options->material.symmetrize));
   fields.AddRequired(Text("directions", &options->directions,
                           "CSV file of pairs of directions; - is standard input"));
   fields.AddRequired(Text("out", &options->out, "CSV file to write; - is standard output"));

@@ -22,6 +22,7 @@ Fields ExportFields(ExportOptions* options) {
       Text("fit", &options->fit, "fitted network (.safetensors, or NBRDF's .h5 or fc1.npy)"));
   fields.AddCommon(MaterialField(&options->material));
   fields.AddCommon(ScaleField(&options->material));
+  fields.AddCommon(SymmetrizeField(&options->material.symmetrize));
   fields.AddRequired(Custom(
       "format",
       [options](std::string_view text) {

@@ -5,13 +5,17 @@
 
 #include "commands.h"
 #include "material_options.h"
+#include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf::cli {
 namespace {
+
+constexpr std::size_t kSamples = 50000;  // for the material's own differences
 
 void ListBuiltins() {
   for (const BuiltinMaterial& material : BuiltinMaterials()) {
@@ -62,6 +66,17 @@ void PrintMetadata(const std::map<std::string, std::string>& metadata) {
   }
 }
 
+// Of a material that isn't reciprocal.
+void PrintReciprocity(const Brdf& material) {
+  const auto [hrl, hcl] = MeasureReciprocity(material);
+  const std::vector<BrdfSample> samples = HeldOutSamples(material, kSamples, 1);
+  std::cout << "  not reciprocal: Helmholtz reciprocity loss " << hrl
+            << " (eq. 8), continuity loss " << hcl
+            << " (eq. 9)\n  least mean absolute log error of a reciprocal fit: "
+            << ReciprocalFloor(samples, material)
+            << ", half the mean |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)|\n";
+}
+
 int RunInfo(const Arguments& arguments) {
   const std::string& source = arguments[0];
   if (source == "builtin:") {
@@ -74,6 +89,7 @@ int RunInfo(const Arguments& arguments) {
   }
   const std::unique_ptr<Brdf> brdf = OpenBrdf(source);
   std::cout << source << ": " << brdf->Description() << "\n";
+  if (!brdf->IsReciprocal()) PrintReciprocity(*brdf);
   if (const auto* network = dynamic_cast<const NeuralBrdf*>(brdf.get())) {
     PrintMetadata(network->metadata());
   }

@@ -13,6 +13,7 @@ namespace pbnbrdf::cli {
 struct MaterialOptions {
   std::string source;
   double scale_to_albedo = 0.0;  // 0: not scaled
+  bool symmetrize = false;       // to average both orders of each pair (brdf/reciprocal.h)
 
   // Throws Error.
   std::unique_ptr<Brdf> Open() const;
@@ -20,6 +21,7 @@ struct MaterialOptions {
 
 Field MaterialField(MaterialOptions* material);
 Field ScaleField(MaterialOptions* material);
+Field SymmetrizeField(bool* symmetrize);
 
 // Runs what may find fault with the material, and puts its name before the message.
 template <typename Function>

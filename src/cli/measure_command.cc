@@ -28,6 +28,7 @@ Fields MeasureCommandFields(MeasureCommandOptions* options) {
                           "model (.json)"));
   fields.AddRequired(MaterialField(&options->material));
   fields.AddCommon(ScaleField(&options->material));
+  fields.AddCommon(SymmetrizeField(&options->material.symmetrize));
   fields.AddCommon(Switch("json", &options->json, "print one JSON object"));
   fields.AddCommon(Integer("samples", &options->measure.samples, Between(1, kMaxSamples),
                            "held-out samples that errors are measured at"));

@@ -22,7 +22,7 @@ namespace {
 struct RenderCommandOptions {
   std::string scene, environment, materials, fits, out, png, summary;
   double exposure = 1.0;
-  bool no_skip = false, quiet = false;
+  bool symmetrize = false, no_skip = false, quiet = false;
   RenderOptions render;
 };
 
@@ -37,6 +37,7 @@ Fields RecordedFields(RenderCommandOptions* options) {
                         "NAME=SOURCE;...: sources that replace those of the scene's materials"));
   fields.AddCommon(Text("fits", &options->fits,
                         "folder of networks that fit-scene wrote; they replace the materials"));
+  fields.AddCommon(SymmetrizeField(&options->symmetrize));
   fields.AddCommon(
       Integer("samples_per_pixel", &render->samples_per_pixel, Any(), "paths for each pixel"));
   fields.Add(Integer("max_bounces", &render->max_bounces, Any(),
@@ -162,7 +163,9 @@ Rendering RenderScene(const RenderCommandOptions& options, const Scene& scene,
     shown = percent;
     return !Interrupted();
   };
-  const auto open = [](const std::string& source) { return OpenedMaterial{OpenBrdf(source)}; };
+  const auto open = [&](const std::string& source) {
+    return OpenedMaterial{MaterialOptions{source, 0.0, options.symmetrize}.Open()};
+  };
   return Render(scene, open, render);
 } catch (const Error& error) {
   Fail(options.scene, ": ", error.what());

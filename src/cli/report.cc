@@ -36,7 +36,10 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
   const Reciprocity reciprocity = MeasureReciprocity(fit);
   const Energy energy = MeasureEnergy(fit);
   const Energy of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
+  const auto at_measured = SamplesAtMeasured(material, options.samples, options.seed);
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
+          {"error_at_measured", MeasureErrors(at_measured, fit).mean_abs_log_error},
+          {"reciprocal_floor", ReciprocalFloor(heldout, material)},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
           {"hcl", reciprocity.hcl},
@@ -58,6 +61,10 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
 std::string MeasuresText(const nlohmann::ordered_json& measures) {
   constexpr std::pair<const char*, const char*> kMeanings[] = {
       {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
+      {"error_at_measured",
+       "the same at measured directions, where others are interpolated between them"},
+      {"reciprocal_floor",
+       "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
       {"rmse", "root mean square error of f cos, 1/sr"},
       {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
       {"hcl", "Helmholtz continuity loss (eq. 9)"},

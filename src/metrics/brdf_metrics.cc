@@ -121,6 +121,23 @@ HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& t
   return errors;
 }
 
+double ReciprocalFloor(std::span<const BrdfSample> samples, const Brdf& material) {
+  std::vector<BrdfSample> swapped(samples.begin(), samples.end());
+  for (BrdfSample& sample : swapped) sample.pair = Swapped(sample.pair);
+  const std::vector<Rgb> back = ValuesAt(swapped, material);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    if (!material.IsKnown(swapped[n].pair)) continue;
+    const double cos_i = CosI(samples[n].pair);
+    for (int c = 0; c < 3; ++c) {
+      sum += std::abs(std::log1p(samples[n].value[c] * cos_i) - std::log1p(back[n][c] * cos_i));
+    }
+    count += 3;
+  }
+  return count > 0 ? 0.5 * sum / static_cast<double>(count) : 0.0;
+}
+
 ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf& test) {
   const std::vector<Rgb> values = ValuesAt(reference, test);
   std::vector<double> delta_e(reference.size()), dark;

@@ -17,6 +17,7 @@ class FastNeuralBrdf final : public Brdf {
   void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                          std::span<Rgb> values) const override;
   bool IsIsotropic() const override { return pbnbrdf::IsIsotropic(shape_.encoding()); }
+  bool IsReciprocal() const override { return pbnbrdf::IsReciprocal(shape_.encoding()); }
   int NumChannels() const override { return shape_.num_outputs(); }
   std::string Description() const override;
 

@@ -43,9 +43,9 @@ double BatchPass<T>::Cost(const T* weights, const T* input, std::size_t b, int s
   double cost = 0.0;
   for (std::size_t t = 0; t < batches_.size(); ++t) {
     const SampleTerm& term = *terms_.terms[t].term;
-    const double weight = terms_.WeightOf(terms_.terms[t]);
     term.EvaluateResiduals(b, size, z_.data(), &batches_[t]);
     for (int n = 0; n < size; ++n) {
+      const double weight = terms_.WeightOf(terms_.terms[t], b * kBatch + n);
       if (terms_.loss.is_absolute()) {
         double sum = 0.0;
         for (int row = 0; row < term.rows(); ++row) {
@@ -82,8 +82,8 @@ void BatchPass<T>::Linearize(const T* weights, const T* input, std::size_t b, in
     TermBatch& batch = batches_[t];
     term.Evaluate(b, size, z_.data(), &batch);
     for (int n = 0; n < size; ++n) {
-      const RobustWeight robust =
-          terms_.loss.At(terms_.WeightOf(terms_.terms[t]), SquaredNorm(batch, term.rows(), n));
+      const RobustWeight robust = terms_.loss.At(terms_.WeightOf(terms_.terms[t], b * kBatch + n),
+                                                 SquaredNorm(batch, term.rows(), n));
       *cost += robust.cost;
       scales[n] = robust.row_scale;
     }
@@ -110,12 +110,11 @@ void BatchPass<T>::AddGradient(const T* weights, const T* input, std::size_t b, 
   std::fill(sum_.begin(), sum_.end(), 0.0);
   for (std::size_t t = 0; t < batches_.size(); ++t) {
     const SampleTerm& term = *terms_.terms[t].term;
-    const double weight = terms_.WeightOf(terms_.terms[t]);
     term.Evaluate(b, size, z_.data(), &batches_[t]);
     if (terms_.loss.is_absolute()) {
-      AddAbsolutes(batches_[t], term.rows(), weight, size, cost);
+      AddAbsolutes(t, b, size, cost);
     } else {
-      AddSquares(batches_[t], term.rows(), weight, size, cost);
+      AddSquares(t, b, size, cost);
     }
   }
   std::copy(sum_.begin(), sum_.end(), mlp_.output_gradient(0));
@@ -124,9 +123,11 @@ void BatchPass<T>::AddGradient(const T* weights, const T* input, std::size_t b, 
 }
 
 template <typename T>
-void BatchPass<T>::AddSquares(const TermBatch& batch, int rows, double weight, int size,
-                              double* cost) {
+void BatchPass<T>::AddSquares(std::size_t t, std::size_t b, int size, double* cost) {
+  const TermBatch& batch = batches_[t];
+  const int rows = terms_.terms[t].term->rows();
   for (int n = 0; n < size; ++n) {
+    const double weight = terms_.WeightOf(terms_.terms[t], b * kBatch + n);
     const RobustWeight robust = terms_.loss.At(weight, SquaredNorm(batch, rows, n));
     *cost += robust.cost;
     for (int row = 0; row < rows; ++row) {
@@ -141,9 +142,11 @@ void BatchPass<T>::AddSquares(const TermBatch& batch, int rows, double weight, i
 
 // The sum of absolute values has the gradient of a sum of products with the signs.
 template <typename T>
-void BatchPass<T>::AddAbsolutes(const TermBatch& batch, int rows, double weight, int size,
-                                double* cost) {
+void BatchPass<T>::AddAbsolutes(std::size_t t, std::size_t b, int size, double* cost) {
+  const TermBatch& batch = batches_[t];
+  const int rows = terms_.terms[t].term->rows();
   for (int n = 0; n < size; ++n) {
+    const double weight = terms_.WeightOf(terms_.terms[t], b * kBatch + n);
     double sum = 0.0;
     for (int row = 0; row < rows; ++row) {
       const double r = batch.residuals[row * kBatch + n];

@@ -11,15 +11,16 @@
 
 namespace pbnbrdf {
 
-// The terms, with weights that make each a mean over the samples.
+// The terms, with weights that make each a weighted mean over the samples.
 struct SampleTerms {
   std::vector<WeightedSampleTerm> terms;
   RobustLoss loss;
-  std::size_t samples = 0;
+  const EncodedSamples* samples;
+  double total_weight = 0.0;  // of the samples so far
 
   int rows() const;
-  double WeightOf(const WeightedSampleTerm& term) const {
-    return term.weight / static_cast<double>(samples);
+  double WeightOf(const WeightedSampleTerm& term, std::size_t n) const {
+    return term.weight * samples->weight(n) / total_weight;
   }
 };
 
@@ -50,8 +51,8 @@ class BatchPass {
   static constexpr int kBatch = kernels::kBatch;
 
   void Forward(const T* weights, const T* input);
-  void AddSquares(const TermBatch& batch, int rows, double weight, int size, double* cost);
-  void AddAbsolutes(const TermBatch& batch, int rows, double weight, int size, double* cost);
+  void AddSquares(std::size_t t, std::size_t b, int size, double* cost);
+  void AddAbsolutes(std::size_t t, std::size_t b, int size, double* cost);
   double SquaredNorm(const TermBatch& batch, int rows, int n) const;
   void ClearRows();
 

@@ -16,10 +16,12 @@ void AddSampleTerm(const FitProblem& problem, const WeightedSampleTerm& term,
                    std::span<const BrdfSample> samples, const std::vector<double*>& blocks,
                    ceres::Problem* ceres_problem) {
   const NetworkShape shape = problem.Shape();
-  const double weight = term.weight / static_cast<double>(samples.size());
+  double total_weight = 0.0;
+  for (const BrdfSample& sample : samples) total_weight += sample.weight;
   for (const BrdfSample& sample : samples) {
-    ceres_problem->AddResidualBlock(term.term->NewCostFunction(shape, sample),
-                                    Weighted(MakeLoss(problem.terms), weight), blocks);
+    ceres_problem->AddResidualBlock(
+        term.term->NewCostFunction(shape, sample),
+        Weighted(MakeLoss(problem.terms), term.weight * sample.weight / total_weight), blocks);
   }
 }
 

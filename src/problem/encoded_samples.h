@@ -32,6 +32,8 @@ class EncodedSamples {
   std::span<const BrdfSample> first(std::size_t count) const {
     return samples().first(std::min(count, size()));
   }
+  // Of the residuals of sample n.
+  double weight(std::size_t n) const { return samples_[n].weight; }
   double cos_i(std::size_t n) const { return cos_i_[n]; }
   const EncodedBatches<double>& inputs() const { return inputs_; }
 

@@ -1,5 +1,6 @@
 #include "problem/initial_weights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -23,7 +24,7 @@ std::vector<double> InitialWeights(const NetworkShape& shape, std::span<const Br
       }
       if (!glorot || layer + 1 < shape.num_layers()) continue;
       for (const BrdfSample& sample : samples) {
-        row[in] += std::log1p(sample.value[o]) / static_cast<double>(samples.size());
+        row[in] += std::log1p(std::max(sample.value[o], 0.0)) / static_cast<double>(samples.size());
       }
     }
   }

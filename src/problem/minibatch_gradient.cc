@@ -46,6 +46,8 @@ void MinibatchGradient::AddBlock(const float* weights, const float* block, float
                                    block + Minibatches::kValue * kBatch,
                                    scale * static_cast<float>(term.weight), to);
   }
+  const float* sample_weights = block + Minibatches::kSampleWeight * kBatch;
+  for (int i = 0; i < kChannels * kBatch; ++i) to[i] *= sample_weights[i % kBatch];
   mlp_.Backward(weights);
   mlp_.AddWeightGradient(0, gradient);
 }

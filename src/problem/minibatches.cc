@@ -24,12 +24,16 @@ MinibatchStream::MinibatchStream(const FitProblem& problem, const EncodedSamples
       energy_angles_(energy_angles),
       random_(problem.sampling.seed),
       order_(samples.size()) {
+  double total_weight = 0.0;
+  for (const BrdfSample& sample : samples.samples()) total_weight += sample.weight;
+  const double scale = static_cast<double>(samples.size()) / total_weight;
   rows_.reserve(samples.size() * Minibatches::kRows);
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const double* input = samples.inputs().batch(n / kBatch) + n % kBatch;
     for (int i = 0; i < kEncodedSize; ++i) rows_.push_back(static_cast<float>(input[i * kBatch]));
     rows_.push_back(static_cast<float>(samples.cos_i(n)));
     for (double f : samples.samples()[n].value) rows_.push_back(static_cast<float>(f));
+    rows_.push_back(static_cast<float>(scale * samples.weight(n)));
   }
   std::iota(order_.begin(), order_.end(), 0u);
 }

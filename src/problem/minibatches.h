@@ -17,9 +17,10 @@ namespace pbnbrdf {
 
 // A few minibatches, to be evaluated one after the other.
 struct Minibatches {
-  // Rows of a block of kernels::kBatch samples, by feature: the encoded pair, cos_i, f. Zeros stand
-  // behind the last sample of a minibatch.
-  static constexpr int kCos = kEncodedSize, kValue = kCos + 1, kRows = kValue + 3;
+  // Rows of a block of kernels::kBatch samples, by feature: the encoded pair, cos_i, f, the weight of
+  // the sample, their mean being 1. Zeros stand behind the last sample of a minibatch.
+  static constexpr int kCos = kEncodedSize, kValue = kCos + 1, kSampleWeight = kValue + 3;
+  static constexpr int kRows = kSampleWeight + 1;
   // Rows of a block of kernels::kBatch nodes: the encoded pair, the weight. Zeros likewise.
   static constexpr int kWeight = kEncodedSize, kNodeRows = kWeight + 1;
 

@@ -47,13 +47,15 @@ double Total(const std::vector<double>& sums) {
 template <typename T>
 SampleSums<T>::SampleSums(const NetworkShape& shape, const TermOptions& terms,
                           const EncodedSamples& samples)
-    : shape_(shape), samples_(samples), terms_{MakeSampleTerms(terms), RobustLoss(terms)} {}
+    : shape_(shape),
+      samples_(samples),
+      terms_{MakeSampleTerms(terms), RobustLoss(terms), &samples} {}
 
 template <typename T>
 void SampleSums<T>::Grow(std::size_t count) {
+  for (std::size_t n = inputs_.size(); n < count; ++n) terms_.total_weight += samples_.weight(n);
   inputs_.Add(samples_.inputs(), inputs_.size(), count);
   for (const WeightedSampleTerm& term : terms_.terms) term.term->Grow(samples_, count);
-  terms_.samples = count;
   all_batches_.resize(inputs_.num_batches());
   std::iota(all_batches_.begin(), all_batches_.end(), std::size_t{0});
 }

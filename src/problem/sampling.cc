@@ -19,6 +19,10 @@ constexpr std::size_t kDrawsPerKnown = 10000;
 constexpr std::size_t kHeldOutOneIn = 8;
 constexpr std::size_t kFewMeasurements = 3000, kMeasuredToInterpolated = 3;
 constexpr double kPlacesPerUnit = 1e6;
+constexpr double kMinProduct = -0.999;  // of f cos: log1p ends at -1
+// Of the training samples: the part at measured directions, where f isn't measured everywhere alike
+// (experiments/measured.cc).
+constexpr double kMeasuredPart = 0.4;
 
 // Uniform on the grid (k + 1/2) 2^-32; std::uniform_real_distribution differs between libraries.
 double Uniform(std::mt19937_64& random) {
@@ -37,9 +41,12 @@ double DrawThetaH(Sampling sampling, std::mt19937_64& random) {
   return 0.5 * kPi * (u < 0.5 ? 2.0 * u : std::pow(2.0 * u - 1.0, 4));
 }
 
-bool IsUsable(const Rgb& value) {
-  return std::all_of(value.begin(), value.end(),
-                     [](double v) { return v >= 0.0 && std::isfinite(v); });
+// Whether the log term exists there. Noise makes measurements negative; to leave them out would make
+// dark materials brighter.
+bool IsUsable(const BrdfSample& sample) {
+  const double cos_i = CosI(sample.pair);
+  return std::all_of(sample.value.begin(), sample.value.end(),
+                     [&](double v) { return v * cos_i > kMinProduct && std::isfinite(v); });
 }
 
 // The finalizer of splitmix64 (Steele, Lea, Flood 2014).
@@ -73,6 +80,14 @@ std::vector<BrdfSample> PartOf(const std::vector<BrdfSample>& all, SampleSet set
   std::vector<BrdfSample> part;
   for (std::size_t k = begin; k < end; ++k) part.push_back(all[order[k].second]);
   return part;
+}
+
+std::vector<BrdfSample> SamplesAt(const Brdf& material, const std::vector<DirectionPair>& pairs) {
+  std::vector<Rgb> values(pairs.size());
+  material.Evaluate(pairs, values);
+  std::vector<BrdfSample> samples;
+  for (std::size_t n = 0; n < pairs.size(); ++n) samples.push_back({pairs[n], values[n]});
+  return samples;
 }
 
 // Fisher and Yates; std::shuffle differs between libraries.
@@ -128,6 +143,12 @@ DirectionPair SampleStream::DrawPair() {
   return FromAngles(angles);
 }
 
+// Some of them.
+void SampleStream::MoveToMeasured(DirectionPair* pair) {
+  const auto measured = brdf_.NearestMeasured(*pair);
+  if (measured && Uniform(random_) < kMeasuredPart) *pair = *measured;
+}
+
 std::size_t SampleStream::most() const {
   return measured_.empty() ? std::numeric_limits<std::size_t>::max() : measured_.size();
 }
@@ -148,12 +169,15 @@ void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* sample
     if (drawn >= kDrawsPerKnown * (count - missing + 100)) {
       Fail("too little data: ", count - missing, " of ", drawn, " random angles are known");
     }
-    const DirectionPair pair = DrawPair();
+    DirectionPair pair = DrawPair();
+    if (set_ == SampleSet::kTraining) MoveToMeasured(&pair);
     if (brdf_.IsKnown(pair)) pairs.push_back(pair);
     if (pairs.size() < std::min(kBatch, missing)) continue;
-    brdf_.Evaluate(pairs, std::span(values).first(pairs.size()));
+    brdf_.EvaluateUnclipped(pairs, std::span(values).first(pairs.size()));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
-      if (IsUsable(values[n])) samples->push_back({pairs[n], values[n]});
+      // The square root leaves interpolated values more of a say: pictures are made of them, too.
+      const BrdfSample sample = {pairs[n], values[n], std::sqrt(brdf_.Certainty(pairs[n]))};
+      if (IsUsable(sample)) samples->push_back(sample);
     }
     pairs.clear();
   }
@@ -169,6 +193,16 @@ std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const Sampl
 std::vector<BrdfSample> HeldOutSamples(const Brdf& material, std::size_t count,
                                        std::uint64_t seed) {
   return DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform, count, seed);
+}
+
+std::vector<BrdfSample> SamplesAtMeasured(const Brdf& material, std::size_t count,
+                                          std::uint64_t seed) {
+  std::vector<DirectionPair> pairs;
+  for (const BrdfSample& sample : HeldOutSamples(material, count, seed)) {
+    const DirectionPair pair = material.NearestMeasured(sample.pair).value_or(sample.pair);
+    if (material.IsKnown(pair)) pairs.push_back(pair);
+  }
+  return SamplesAt(material, pairs);
 }
 
 }  // namespace pbnbrdf

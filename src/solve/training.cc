@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "problem/fit_target.h"
 #include "solve/start.h"
 
 namespace pbnbrdf {
@@ -44,11 +45,12 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
     : options_(options),
       solver_(FindSolver(options.solver)),
       problem_(FirstProblem(problem, solver_)),
-      stream_(material, SampleSet::kTraining, problem.sampling.Angles(), problem.sampling.seed),
+      target_(FitTarget(material, *problem.network.encoding)),
+      stream_(*target_, SampleSet::kTraining, problem.sampling.Angles(), problem.sampling.seed),
       max_samples_(std::min<std::size_t>(problem.sampling.samples, stream_.most())),
       samples_(*problem.network.encoding),
       validation_samples_(*problem.network.encoding,
-                          DrawSamples(material, SampleSet::kTraining, problem.sampling.Angles(),
+                          DrawSamples(*target_, SampleSet::kTraining, problem.sampling.Angles(),
                                       kValidationSamples, problem.sampling.seed + kValidationSeed)),
       heldout_samples_(*problem.network.encoding),
       strata_(EqualStrata(problem)),

@@ -63,6 +63,7 @@ class Training {
   const FitOptions& options_;
   const Solver& solver_;
   FitProblem problem_;
+  std::shared_ptr<const Brdf> target_;
   SampleStream stream_;
   std::size_t max_samples_;
   EncodedSamples samples_, validation_samples_, heldout_samples_;

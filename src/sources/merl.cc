@@ -118,7 +118,7 @@ MerlBrdf MerlBrdf::Read(const std::string& path) {
   }
   MerlBrdf table(grid, std::move(planes));
   if (table.valid_bins_ == 0) {
-    Fail(path, ": no valid bin: all ", bins, " have a negative channel");
+    Fail(path, ": no valid bin: all ", bins, " hold one negative number in all channels");
   }
   return table;
 }
@@ -171,12 +171,18 @@ bool MerlBrdf::IsKnown(const DirectionPair& pair) const {
 }
 
 std::string MerlBrdf::Description() const {
+  std::size_t negative = 0;
+  for (std::size_t bin = 0; bin < grid_.bins(); ++bin) {
+    negative += IsValid(bin) && std::min({Stored(0, bin), Stored(1, bin), Stored(2, bin)}) < 0.0;
+  }
   return StrCat("MERL table ", GridText(grid_), ", ", valid_bins_, " of ", grid_.bins(),
-                " bins valid");
+                " bins valid",
+                negative > 0 ? StrCat(", ", negative, " with a negative channel") : "");
 }
 
 bool MerlBrdf::IsValid(std::size_t bin) const {
-  return Stored(0, bin) >= 0.0 && Stored(1, bin) >= 0.0 && Stored(2, bin) >= 0.0;
+  const double r = Stored(0, bin);
+  return r >= 0.0 || r != Stored(1, bin) || r != Stored(2, bin);
 }
 
 Rgb MerlBrdf::Interpolate(const DirectionPair& pair) const {

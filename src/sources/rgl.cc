@@ -15,7 +15,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeastJacobian = 1e-6;
-constexpr double kLastKnown = 85.0 * kPi / 180.0;
+constexpr double kDegree = kPi / 180.0;
+constexpr double kLastKnown = 85.0 * kDegree, kLastEstimated = 89.4 * kDegree;
+constexpr double kLastMeasured = 89.9 * kDegree;
+// Of the best estimate: what is added to values before the logarithm, and how fast certainty falls
+// between nodes. experiments/measured.cc shows the choice.
+constexpr double kLogOffset = 0.03, kDoubt = 8.0;
 constexpr float kLongestWave = 1e5f;       // nm
 constexpr std::size_t kShownText = 60;     // of a file's own description
 constexpr std::size_t kMostIsotropic = 2;  // phi_i nodes
@@ -67,6 +72,14 @@ std::vector<float> ReadNodes(const TensorFile& file, const std::string& name, fl
   return nodes;
 }
 
+// The slope at a node between intervals of these widths and secants, by which a cubic between nodes stays
+// monotone: the weighted harmonic mean of Fritsch and Butland (1984).
+double MonotoneSlope(double width0, double secant0, double width1, double secant1) {
+  if (secant0 * secant1 <= 0.0) return 0.0;
+  const double w0 = 2.0 * width1 + width0, w1 = width1 + 2.0 * width0;
+  return (w0 + w1) / (w0 / secant0 + w1 / secant1);
+}
+
 // Two last sizes of a field's shape; at least 2 x 2.
 Table ReadShape(const TensorFile& file, const std::string& name, const Shape& shape) {
   Table table{shape[shape.size() - 2], shape[shape.size() - 1], {}};
@@ -108,25 +121,34 @@ WarpTables ReadWarp(const TensorFile& file, const std::string& name, std::size_t
 struct RglBrdf::Tables {
   // Where a pair lies in all the tables.
   struct Place {
-    TableBlend blend;
-    SquarePoint normal;  // of the half vector
-    SquarePoint color;   // in the tables of colours
-    double scale;        // D / (4 sigma)
+    NodePosition phi, theta;  // of wi, among the nodes
+    TableBlend blend;         // of the tables at these
+    SquarePoint normal;       // of the half vector
+    SquarePoint color;        // in the tables of colours
+    double scale;             // D / (4 sigma)
   };
 
   explicit Tables(const TensorFile& file);
 
   bool is_spectral() const { return !wavelengths.empty(); }
-  TableBlend BlendAt(const Vec3& wi) const;
+  NodePosition ThetaAt(const Vec3& wi) const { return PlaceAmong(theta_i, Elevation(wi)); }
+  NodePosition PhiAt(const Vec3& wi) const;
+  TableBlend Blend(const NodePosition& phi, const NodePosition& theta) const;
   SquarePoint NormalAt(const Vec3& wi, const Vec3& half) const;
   Place Locate(const DirectionPair& pair) const;
-  Rgb Value(const DirectionPair& pair) const;
+  Vec3 Reflected(const Vec3& wi, const SquarePoint& normal) const;
+  Rgb Value(const DirectionPair& pair, Interpolation interpolation) const;
+  double Linear(const Place& place, std::size_t channel) const;
+  double MonotoneCubic(const Place& place, std::size_t channel) const;
+  double AtNode(const Place& place, std::size_t theta, std::size_t channel) const;
+  std::size_t measured_angles() const;  // the first so many of theta_i
+  double Doubt(double theta) const;
   void ReadColors(const TensorFile& file);
   double Pdf(const Vec3& wi, const Vec3& wo) const;
+  Tables Without(std::size_t theta) const;
 
   std::vector<float> theta_i, phi_i;  // radians, ascending
   bool isotropic;
-  double least_cosine;  // of what is known
   Table ndf, sigma;
   Table color_size;
   WarpTables vndf, luminance;
@@ -140,7 +162,6 @@ RglBrdf::Tables::Tables(const TensorFile& file)
     : theta_i(ReadNodes(file, "theta_i", 0.0f, kLastElevation)),
       phi_i(ReadNodes(file, "phi_i", -kLastAzimuth, kLastAzimuth)),
       isotropic(phi_i.size() <= kMostIsotropic),
-      least_cosine(std::cos(std::min<double>(theta_i.back(), kLastKnown))),
       ndf(ReadTable(file, "ndf")),
       sigma(ReadTable(file, "sigma")),
       vndf(ReadWarp(file, "vndf", phi_i.size(), theta_i.size(), &color_size)),
@@ -186,11 +207,13 @@ void RglBrdf::Tables::ReadColors(const TensorFile& file) {
   }
 }
 
-TableBlend RglBrdf::Tables::BlendAt(const Vec3& wi) const {
+NodePosition RglBrdf::Tables::PhiAt(const Vec3& wi) const {
   const double azimuth = Azimuth(wi);
   const bool turn = !isotropic && azimuth < phi_i.front();  // nodes from 0 to 2 pi
-  const auto phi = PlaceAmong(phi_i, turn ? azimuth + 2.0 * kPi : azimuth);
-  const auto theta = PlaceAmong(theta_i, Elevation(wi));
+  return PlaceAmong(phi_i, turn ? azimuth + 2.0 * kPi : azimuth);
+}
+
+TableBlend RglBrdf::Tables::Blend(const NodePosition& phi, const NodePosition& theta) const {
   TableBlend blend;
   for (std::size_t p = 0; p < 2; ++p) {
     for (std::size_t t = 0; t < 2; ++t) {
@@ -210,7 +233,9 @@ SquarePoint RglBrdf::Tables::NormalAt(const Vec3& wi, const Vec3& half) const {
 RglBrdf::Tables::Place RglBrdf::Tables::Locate(const DirectionPair& pair) const {
   const Vec3 sum = pair.wi + pair.wo;
   Place place;
-  place.blend = BlendAt(pair.wi);
+  place.phi = PhiAt(pair.wi);
+  place.theta = ThetaAt(pair.wi);
+  place.blend = Blend(place.phi, place.theta);
   place.normal = NormalAt(pair.wi, (1.0 / Length(sum)) * sum);
   place.color = vndf.ToUniform(place.blend, place.normal);
   const double area = sigma.At(ElevationColumn(Elevation(pair.wi)), AzimuthRow(Azimuth(pair.wi)));
@@ -219,21 +244,76 @@ RglBrdf::Tables::Place RglBrdf::Tables::Locate(const DirectionPair& pair) const 
   return place;
 }
 
-Rgb RglBrdf::Tables::Value(const DirectionPair& pair) const {
-  const Place place = Locate(pair);
+double RglBrdf::Tables::Linear(const Place& place, std::size_t channel) const {
   const std::size_t size = color_size.rows * color_size.columns;
+  double blended = 0.0;
+  for (int k = 0; k < place.blend.count; ++k) {
+    blended += place.blend.weights[k] *
+               Bilinear(&colors[(3 * place.blend.tables[k] + channel) * size], color_size.rows,
+                        color_size.columns, place.color.x, place.color.y);
+  }
+  return blended;
+}
+
+// Blended over phi_i alone.
+double RglBrdf::Tables::AtNode(const Place& place, std::size_t theta, std::size_t channel) const {
+  Place there = place;
+  there.blend = Blend(place.phi, {theta, 0.0});
+  return Linear(there, channel);
+}
+
+std::size_t RglBrdf::Tables::measured_angles() const {
+  return theta_i.size() - (theta_i.size() > 1 && theta_i.back() > kLastMeasured);
+}
+
+double RglBrdf::Tables::MonotoneCubic(const Place& place, std::size_t channel) const {
+  const auto [below, t] = place.theta;
+  if (t == 0.0) return Linear(place, channel);
+  const auto at = [&](std::size_t k) {
+    return std::log(std::max(AtNode(place, k, channel), 0.0) + kLogOffset);
+  };
+  const auto width = [&](std::size_t k) { return double(theta_i[k + 1]) - theta_i[k]; };
+  const double h = width(below), y0 = at(below), y1 = at(below + 1), secant = (y1 - y0) / h;
+  double slope0 = secant, slope1 = secant;
+  if (below > 0) {
+    const double h0 = width(below - 1);
+    slope0 = MonotoneSlope(h0, (y0 - at(below - 1)) / h0, h, secant);
+  }
+  if (below + 2 < measured_angles()) {
+    const double h1 = width(below + 1);
+    slope1 = MonotoneSlope(h, secant, h1, (at(below + 2) - y1) / h1);
+  }
+  const double s = 1.0 - t;
+  const double y = s * s * (1.0 + 2.0 * t) * y0 + t * t * (3.0 - 2.0 * t) * y1 +
+                   h * t * s * (s * slope0 - t * slope1);
+  return std::exp(y) - kLogOffset;
+}
+
+Rgb RglBrdf::Tables::Value(const DirectionPair& pair, Interpolation interpolation) const {
+  const Place place = Locate(pair);
   const double scale = place.scale / pair.wo.z;
   Rgb value;
   for (std::size_t c = 0; c < 3; ++c) {
-    double blended = 0.0;
-    for (int k = 0; k < place.blend.count; ++k) {
-      blended += place.blend.weights[k] * Bilinear(&colors[(3 * place.blend.tables[k] + c) * size],
-                                                   color_size.rows, color_size.columns,
-                                                   place.color.x, place.color.y);
-    }
-    value[c] = blended > 0.0 ? std::min(blended * scale, kLargestValue) : 0.0;
+    const double v =
+        interpolation == Interpolation::kLinear ? Linear(place, c) : MonotoneCubic(place, c);
+    value[c] = v > 0.0 ? std::min(v * scale, kLargestValue) : 0.0;
   }
   return value;
+}
+
+// How far from the measured angles, as a fraction of the interval that theta is in.
+double RglBrdf::Tables::Doubt(double theta) const {
+  const NodePosition at = PlaceAmong(theta_i, theta);
+  const bool has_next = at.below + 1 < measured_angles();
+  return has_next ? std::min(at.fraction, 1.0 - at.fraction) : at.fraction;
+}
+
+// wo, given the place of its half vector.
+Vec3 RglBrdf::Tables::Reflected(const Vec3& wi, const SquarePoint& normal) const {
+  const double turn = isotropic ? Azimuth(wi) : 0.0;
+  const Vec3 half =
+      FromSpherical(0.5 * kPi * normal.x * normal.x, (2.0 * normal.y - 1.0) * kPi + turn);
+  return 2.0 * Dot(wi, half) * half - wi;
 }
 
 double RglBrdf::Tables::Pdf(const Vec3& wi, const Vec3& wo) const {
@@ -246,22 +326,61 @@ double RglBrdf::Tables::Pdf(const Vec3& wi, const Vec3& wo) const {
          jacobian;
 }
 
-RglBrdf::RglBrdf(std::unique_ptr<const Tables> tables) : tables_(std::move(tables)) {}
-RglBrdf::~RglBrdf() = default;
-RglBrdf::RglBrdf(RglBrdf&&) noexcept = default;
+// As if the theta-th incident angle had not been measured.
+RglBrdf::Tables RglBrdf::Tables::Without(std::size_t theta) const {
+  const std::size_t period = theta_i.size(), count = phi_i.size() * period;
+  Tables rest = *this;
+  rest.theta_i = WithoutTables(theta_i, period, theta, period);
+  rest.colors = WithoutTables(colors, count, theta, period);
+  if (!spectra.empty()) rest.spectra = WithoutTables(spectra, count, theta, period);
+  rest.vndf = vndf.Without(theta, period);
+  rest.luminance = luminance.Without(theta, period);
+  return rest;
+}
+
+RglBrdf::RglBrdf(std::shared_ptr<const Tables> tables, Interpolation interpolation)
+    : tables_(std::move(tables)), interpolation_(interpolation) {}
 
 RglBrdf RglBrdf::Read(const std::string& path) {
-  return RglBrdf(std::make_unique<const Tables>(TensorFile::Read(path)));
+  return RglBrdf(std::make_shared<const Tables>(TensorFile::Read(path)), Interpolation::kLinear);
 }
 
 void RglBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs, std::span<Rgb> values) const {
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    values[n] = pairs[n].AboveHorizon() ? tables_->Value(pairs[n]) : Rgb{};
+    values[n] = pairs[n].AboveHorizon() ? tables_->Value(pairs[n], interpolation_) : Rgb{};
   }
 }
 
 bool RglBrdf::IsKnown(const DirectionPair& pair) const {
-  return pair.AboveHorizon() && std::min(pair.wi.z, pair.wo.z) >= tables_->least_cosine;
+  const bool is_estimate = interpolation_ == Interpolation::kMonotoneCubic;
+  const double last =
+      std::min<double>(tables_->theta_i.back(), is_estimate ? kLastEstimated : kLastKnown);
+  return pair.AboveHorizon() && std::min(pair.wi.z, pair.wo.z) >= std::cos(last);
+}
+
+std::unique_ptr<Brdf> RglBrdf::BestEstimate() const {
+  return std::unique_ptr<Brdf>(new RglBrdf(tables_, Interpolation::kMonotoneCubic));
+}
+
+double RglBrdf::Certainty(const DirectionPair& pair) const {
+  const double doubt = kDoubt * tables_->Doubt(Elevation(pair.wi));
+  return 1.0 / (1.0 + doubt * doubt);
+}
+
+std::optional<DirectionPair> RglBrdf::NearestMeasured(const DirectionPair& pair) const {
+  const NodePosition at = tables_->ThetaAt(pair.wi);
+  const std::size_t nearest =
+      std::min(at.below + (at.fraction > 0.5), tables_->measured_angles() - 1);
+  return DirectionPair{FromSpherical(tables_->theta_i[nearest], Azimuth(pair.wi)), pair.wo};
+}
+
+std::vector<double> RglBrdf::IncidentAngles() const {
+  const auto begin = tables_->theta_i.begin();
+  return {begin, begin + static_cast<std::ptrdiff_t>(tables_->measured_angles())};
+}
+
+RglBrdf RglBrdf::WithoutIncidentAngle(std::size_t index) const {
+  return RglBrdf(std::make_shared<const Tables>(tables_->Without(index)), interpolation_);
 }
 
 bool RglBrdf::IsIsotropic() const { return tables_->isotropic; }
@@ -306,13 +425,10 @@ double RglBrdf::Pdf(const Vec3& wi, const Vec3& wo) const {
 
 Vec3 RglBrdf::Sample(const Vec3& wi, double u0, double u1) const {
   const Tables& t = *tables_;
-  const TableBlend blend = t.BlendAt(wi);
+  const TableBlend blend = t.Blend(t.PhiAt(wi), t.ThetaAt(wi));
   const SquarePoint color = t.luminance.FromUniform(blend, {u0, u1});
   const SquarePoint normal = t.vndf.FromUniform(blend, color);
-  const double turn = t.isotropic ? Azimuth(wi) : 0.0;
-  const Vec3 half =
-      FromSpherical(0.5 * kPi * normal.x * normal.x, (2.0 * normal.y - 1.0) * kPi + turn);
-  return 2.0 * Dot(wi, half) * half - wi;
+  return t.Reflected(wi, normal);
 }
 
 }  // namespace pbnbrdf

@@ -91,6 +91,11 @@ TableBlend WarpTables::Normalized(TableBlend blend) const {
   return blend;
 }
 
+WarpTables WarpTables::Without(std::size_t theta, std::size_t period) const {
+  const std::size_t count = values_.size() / (rows_ * columns_);
+  return WarpTables(WithoutTables(values_, count, theta, period), rows_, columns_);
+}
+
 double WarpTables::Density(const TableBlend& blend, const SquarePoint& at) const {
   double density = 0.0;
   const TableBlend normalized = Normalized(blend);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace pbnbrdf {
@@ -30,6 +31,18 @@ struct TableBlend {
   void Add(std::size_t table, double weight);
 };
 
+// What is left of a stack of `count` tables without the theta-th of each `period` ones.
+template <typename T>
+std::vector<T> WithoutTables(const std::vector<T>& stack, std::size_t count, std::size_t theta,
+                             std::size_t period) {
+  const std::size_t size = stack.size() / count;
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < stack.size(); ++i) {
+    if (i / size % period != theta) kept.push_back(stack[i]);
+  }
+  return kept;
+}
+
 struct SquarePoint {
   double x, y;  // column and row, [0, 1]
 };
@@ -39,6 +52,9 @@ class WarpTables {
   // values: >= 0, [tables][rows][columns], rows and columns >= 2. Each table is scaled so that its
   // interpolant integrates to 1; one that is 0 everywhere becomes uniform.
   WarpTables(std::vector<float> values, std::size_t rows, std::size_t columns);
+
+  // The tables without one in each `period`: the theta-th, theta + period-th, ...
+  WarpTables Without(std::size_t theta, std::size_t period) const;
 
   // The blend's density.
   double Density(const TableBlend& blend, const SquarePoint& at) const;

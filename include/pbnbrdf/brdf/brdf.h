@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@ namespace pbnbrdf {
 
 struct BrdfSample {
   DirectionPair pair;
-  Rgb value;  // f in 1/sr, >= 0
+  Rgb value;            // f in 1/sr; a measured one may be negative, by noise
+  double weight = 1.0;  // of its residuals in a fit, in (0, 1]; 1: as well known as any
 };
 
 // A bidirectional reflectance distribution function f(wi, wo): linear RGB in 1/sr, finite, not
@@ -22,12 +24,12 @@ class Brdf {
  public:
   virtual ~Brdf() = default;
 
-  // values[n] = f(pairs[n]); 0 where either direction isn't above the horizon, at most
-  // kLargestValue everywhere. Sizes must agree.
+  // values[n] = f(pairs[n]), from 0 to kLargestValue; 0 where either direction isn't above the horizon.
+  // Sizes must agree.
   void Evaluate(std::span<const DirectionPair> pairs, std::span<Rgb> values) const;
 
-  // As Evaluate, but whatever the model itself says below the horizon, where a network goes on
-  // (eqs. 8 and 9 of the paper are taken over the whole domain of angles).
+  // As Evaluate, but whatever the source itself says: below the horizon, where a network goes on (eqs. 8
+  // and 9 of the paper are taken over the whole domain of angles), and negative measurements.
   virtual void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                  std::span<Rgb> values) const = 0;
 
@@ -40,6 +42,20 @@ class Brdf {
   // The measurements themselves, all of them above the horizon, where a source is a list of them
   // instead of a model or a grid: what is fitted, while f in between is interpolated. Else empty.
   virtual std::vector<BrdfSample> Measurements() const { return {}; }
+
+  // What f is most likely to be in between, where that differs from Evaluate, which is what the file's
+  // format says: what a fit aims at. Else null.
+  virtual std::unique_ptr<Brdf> BestEstimate() const { return nullptr; }
+
+  // How well f is known at the pair, in (0, 1]: 1 where it was measured, less where it is interpolated.
+  virtual double Certainty(const DirectionPair&) const { return 1.0; }
+
+  // The pair moved to the nearest directions at which f was measured; none where f is known equally
+  // well everywhere.
+  virtual std::optional<DirectionPair> NearestMeasured(const DirectionPair&) const { return {}; }
+
+  // Whether f(wi, wo) = f(wo, wi) always, but for rounding.
+  virtual bool IsReciprocal() const { return false; }
 
   // 3, or 1 where the three channels are one and the same.
   virtual int NumChannels() const { return 3; }

@@ -20,6 +20,12 @@ class ScaledBrdf final : public Brdf {
   bool IsKnown(const DirectionPair& pair) const override { return source_->IsKnown(pair); }
   bool IsIsotropic() const override { return source_->IsIsotropic(); }
   std::vector<BrdfSample> Measurements() const override;
+  std::unique_ptr<Brdf> BestEstimate() const override;
+  double Certainty(const DirectionPair& pair) const override { return source_->Certainty(pair); }
+  std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override {
+    return source_->NearestMeasured(pair);
+  }
+  bool IsReciprocal() const override { return source_->IsReciprocal(); }
   int NumChannels() const override { return source_->NumChannels(); }
   std::string Description() const override;
 

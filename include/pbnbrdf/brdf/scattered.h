@@ -53,6 +53,7 @@ class ScatteredBrdf final : public Brdf {
   static constexpr double kReach = 0.2;
 
   bool IsIsotropic() const override { return data_.isotropic; }
+  bool IsReciprocal() const override { return true; }
   std::vector<BrdfSample> Measurements() const override { return data_.samples; }
   int NumChannels() const override { return data_.channels; }
   std::string Description() const override;

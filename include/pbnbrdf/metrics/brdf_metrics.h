@@ -19,6 +19,11 @@ struct HeldOutErrors {
 // reference: at least one sample.
 HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& test);
 
+// Half the mean of |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)| over samples of a material and
+// channels: the least mean absolute log error that a reciprocal fit can have there. 0 if the material is
+// reciprocal.
+double ReciprocalFloor(std::span<const BrdfSample> samples, const Brdf& material);
+
 // On the same samples the lit colour: what a display shows of the surface under one directional D65
 // light in which a white diffuse surface that faces it is white, pi f cos_i as linear RGB, cut to
 // [0, 1]. 95th percentile: the least value that 95 % of the samples don't exceed.

@@ -43,6 +43,7 @@ class NeuralBrdf final : public Brdf {
   void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                          std::span<Rgb> values) const override;
   bool IsIsotropic() const override { return pbnbrdf::IsIsotropic(shape_.encoding()); }
+  bool IsReciprocal() const override { return pbnbrdf::IsReciprocal(shape_.encoding()); }
   int NumChannels() const override { return shape_.num_outputs(); }
   std::unique_ptr<Brdf> SinglePrecision() const override;  // a FastNeuralBrdf
   std::string Description() const override;

@@ -60,6 +60,7 @@ class SampleStream {
  private:
   void AddInterpolated();
   DirectionPair DrawPair();
+  void MoveToMeasured(DirectionPair* pair);
   void DrawAngles(std::size_t count, std::vector<BrdfSample>* samples);
 
   const Brdf& brdf_;
@@ -76,5 +77,10 @@ std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const Sampl
 
 // What a fit to the material is measured on: DrawSamples of SampleSet::kHeldOut at uniform angles.
 std::vector<BrdfSample> HeldOutSamples(const Brdf& material, std::size_t count, std::uint64_t seed);
+
+// The same, each moved to the nearest directions at which the material was measured; as they are where
+// it is known equally well everywhere.
+std::vector<BrdfSample> SamplesAtMeasured(const Brdf& material, std::size_t count,
+                                          std::uint64_t seed);
 
 }  // namespace pbnbrdf

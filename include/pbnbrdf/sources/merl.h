@@ -6,7 +6,8 @@
 //
 //   theta_h = (pi/2) (i_h/90)^2,  theta_d = (pi/2) i_d/90,  phi_d = pi i_p/180,
 //
-// and phi_d and phi_d + pi are the same by reciprocity. A bin with a negative channel is invalid.
+// and phi_d and phi_d + pi are the same by reciprocity. A bin is invalid where all three channels hold the same negative
+// number; other negative values are noise.
 //
 // Other numbers of bins, when the header says so, divide the same ranges. 360 of phi_d are the whole
 // circle in steps of a degree: such a table says what f is at phi_d + pi, too.
@@ -57,6 +58,7 @@ class MerlBrdf final : public Brdf {
   // Whether the pair's bin is valid.
   bool IsKnown(const DirectionPair& pair) const override;
 
+  bool IsReciprocal() const override { return !grid_.WholeCircle(); }
   std::string Description() const override;
 
   const MerlGrid& grid() const { return grid_; }

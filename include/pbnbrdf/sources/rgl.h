@@ -13,6 +13,7 @@
 //
 // [1] J. Dupuy, W. Jakob. An Adaptive Parameterization for Efficient Material Acquisition and
 //     Rendering. ACM TOG 37(6), 2018.
+// [2] F. Fritsch, R. Carlson. Monotone Piecewise Cubic Interpolation. SIAM J. Numer. Anal. 17(2), 1980.
 #pragma once
 
 #include <memory>
@@ -29,17 +30,31 @@ class RglBrdf final : public Brdf {
   // these must span the whole circle. Throws Error, naming the file and the field at fault.
   static RglBrdf Read(const std::string& path);
 
-  ~RglBrdf() override;
-  RglBrdf(RglBrdf&&) noexcept;
-
   // A channel below 0 (a colour beyond sRGB) is 0. 0 below the horizon.
   void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                          std::span<Rgb> values) const override;
 
-  // Whether both directions are within 85 degrees and the last node of theta_i. Beyond it nothing was
-  // measured at wi; and at grazing wo f is what tables of f cos_o hold, divided by next to nothing:
-  // fits that have to follow it there go astray everywhere.
+  // Whether both directions are within 85 degrees, of the best estimate 89.4, and the last node of
+  // theta_i. Beyond it nothing was measured at wi; and at grazing wo f is what tables of f cos_o hold,
+  // divided by next to nothing.
   bool IsKnown(const DirectionPair& pair) const override;
+
+  // The same tables, interpolated over theta_i by a monotone cubic [2] of log(v + 0.03), v being a
+  // table's value: nearer to measurements that were left out than the format's own linear
+  // interpolation.
+  std::unique_ptr<Brdf> BestEstimate() const override;
+
+  // 1 at a measured theta_i, less in between: 1 / (1 + (8 d)^2), d the distance to the nearest one as a
+  // fraction of the interval.
+  double Certainty(const DirectionPair& pair) const override;
+  std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override;
+
+  // The measured theta_i, radians, ascending. A node at 90 degrees isn't one: nothing can be measured
+  // there.
+  std::vector<double> IncidentAngles() const;
+
+  // As if theta_i = IncidentAngles()[index], neither the first nor the last one, had not been measured.
+  RglBrdf WithoutIncidentAngle(std::size_t index) const;
 
   bool IsIsotropic() const override;
   int NumChannels() const override { return wavelengths().size() == 1 ? 1 : 3; }
@@ -61,10 +76,12 @@ class RglBrdf final : public Brdf {
 
  private:
   struct Tables;
+  enum class Interpolation { kLinear, kMonotoneCubic };  // over theta_i
 
-  explicit RglBrdf(std::unique_ptr<const Tables> tables);
+  RglBrdf(std::shared_ptr<const Tables> tables, Interpolation interpolation);
 
-  std::unique_ptr<const Tables> tables_;
+  std::shared_ptr<const Tables> tables_;
+  Interpolation interpolation_;
 };
 
 }  // namespace pbnbrdf
