@@ -15,7 +15,6 @@
 #include "matrix_product.h"
 #include "network/batched_mlp.h"
 #include "network/evaluation.h"
-#include "network/fast_neural_brdf.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/ceres_problem.h"
@@ -294,7 +293,7 @@ void BM_FastNeuralBrdf(benchmark::State& state) {
   const NeuralBrdf network(fixture.problem.Shape(), fixture.weights);
   if (state.range(0)) hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~(HWY_AVX2 - 1));
   state.SetLabel(kernels::InstructionSet());
-  EvaluateRepeatedly(FastNeuralBrdf(network), state);
+  EvaluateRepeatedly(*network.SinglePrecision(), state);
   hwy::SetSupportedTargetsForTest(0);
 }
 BENCHMARK(BM_FastNeuralBrdf)->ArgName("avx2")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);

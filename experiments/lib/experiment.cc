@@ -38,19 +38,6 @@ std::string HelpText(const std::string& usage, const Fields& fields) {
   return help;
 }
 
-Arguments Parse(const Arguments& words, const Fields& fields) {
-  Arguments arguments;
-  for (const std::string& word : words) {
-    if (word.starts_with("--")) {
-      fields.ReadLines(word);
-    } else {
-      arguments.push_back(word);
-    }
-  }
-  fields.Check();
-  return arguments;
-}
-
 }  // namespace
 
 Output::Output(std::string folder) : folder_(std::move(folder)) {
@@ -80,7 +67,8 @@ int RunExperiment(int argc, char** argv, const std::string& usage, Fields fields
       std::cout << HelpText(usage, all);
       return 0;
     }
-    const Arguments arguments = Parse(words, all);
+    const Arguments arguments = all.ReadFlags(words);
+    all.Check();
     run(arguments, Output(folder));
     return 0;
   } catch (const std::exception& error) {

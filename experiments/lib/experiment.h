@@ -31,8 +31,8 @@ class Output {
 
 using Arguments = std::vector<std::string>;
 
-// A program's main. Sets the fields from the flags of the command line, "--name=value" or, of switches,
-// "--name" and "--noname", and calls `run` with the arguments that aren't flags. --out_dir is a flag of
+// A program's main. Sets the fields from the flags of the command line (Fields::ReadFlags) and calls `run`
+// with the arguments that aren't flags. --out_dir is a flag of
 // every program. --help prints `usage` and the flags. Returns the exit status: 0, or 1 after an Error,
 // which is one line on standard error.
 int RunExperiment(int argc, char** argv, const std::string& usage, Fields fields,

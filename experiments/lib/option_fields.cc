@@ -18,25 +18,19 @@ std::vector<std::vector<int>> ParseNetworks(const std::string& name, std::string
   return networks;
 }
 
-std::string JoinedTexts(const std::vector<std::string>& texts, const std::string& separator) {
-  std::string joined;
-  for (const std::string& text : texts) joined += (joined.empty() ? "" : separator) + text;
-  return joined;
-}
-
 }  // namespace
 
 Field Texts(std::string name, std::vector<std::string>* values, std::string help) {
   return Custom(
       std::move(name), [=](std::string_view text) { *values = Split(text, ','); },
-      [=] { return JoinedTexts(*values, ","); }, [] {}, std::move(help));
+      [=] { return Join(*values, ","); }, [] {}, std::move(help));
 }
 
 Field Networks(std::string name, std::vector<std::vector<int>>* networks, std::string help) {
   const auto print = [=] {
     std::vector<std::string> texts;
     for (const std::vector<int>& hidden : *networks) texts.push_back(Joined(hidden, ","));
-    return JoinedTexts(texts, " ");
+    return Join(texts, " ");
   };
   return Custom(
       name, [=](std::string_view text) { *networks = ParseNetworks(name, text); }, print, [] {},
@@ -46,7 +40,7 @@ Field Networks(std::string name, std::vector<std::vector<int>>* networks, std::s
 std::string Joined(const std::vector<int>& values, const std::string& separator) {
   std::vector<std::string> texts;
   for (int value : values) texts.push_back(StrCat(value));
-  return JoinedTexts(texts, separator);
+  return Join(texts, separator);
 }
 
 std::string HiddenName(const std::vector<int>& hidden) { return Joined(hidden, "-"); }

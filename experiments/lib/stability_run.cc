@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "hard_pairs.h"
-#include "network/fast_neural_brdf.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "problem/initial_weights.h"
 #include "solve/solver.h"
@@ -171,7 +171,8 @@ void EvaluateHardPairs(const char* what, const Brdf& brdf, FiniteCheck* check) {
 // The measures, of the fast network, as they take hundreds of thousands of values.
 void Measure(const Brdf& material, const StabilityCase& c, const NeuralBrdf& network,
              StabilityRecord* record, FiniteCheck* check) {
-  const FastNeuralBrdf fast(network);
+  const std::unique_ptr<Brdf> single = network.SinglePrecision();
+  const Brdf& fast = *single;
   EvaluateHardPairs("values", network, check);
   EvaluateHardPairs("fast_values", fast, check);
   const HeldOutErrors errors =

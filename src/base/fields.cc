@@ -1,10 +1,8 @@
 #include "base/fields.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "base/text.h"
-#include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
 namespace {
@@ -140,12 +138,6 @@ const Field* Fields::Find(std::string_view name) const {
   return nullptr;
 }
 
-std::string Fields::NearestName(std::string_view name) const {
-  std::vector<std::string> names;
-  for (const Field& field : fields_) names.push_back(field.name);
-  return Nearest(names, std::string(name));
-}
-
 void Fields::Check() const {
   for (const Field& field : fields_) field.check();
 }
@@ -162,28 +154,41 @@ std::string Fields::Lines() const {
   return lines;
 }
 
-void Fields::ReadLines(std::string_view lines) const {
-  std::istringstream in{std::string(lines)};
-  for (std::string line; std::getline(in, line);) {
-    const std::string_view text = Trim(line);
-    if (text.empty() || text.starts_with("#")) continue;
-    if (!text.starts_with("--")) Fail("'", text, "' is not a flag; flags begin with --");
-    const FlagText flag(text);
-    if (flag.value) {
-      Set(flag.name, *flag.value);
-    } else if (SetSwitch(flag.name)) {
+std::vector<std::string> Fields::ReadFlags(const std::vector<std::string>& words) const {
+  std::vector<std::string> others;
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (!word->starts_with("-") || *word == "-") {
+      others.push_back(*word);
       continue;
-    } else if (Find(flag.name) != nullptr) {
-      Fail("--", flag.name, " needs a value");
-    } else {
-      FailUnknown(flag.name);
     }
+    FlagText flag(*word);
+    if (!flag.value && SetSwitch(flag.name)) continue;
+    if (!flag.value && Find(flag.name) != nullptr) {
+      if (++word == words.end()) throw UsageError(StrCat("--", flag.name, " needs a value"));
+      flag.value = *word;
+    }
+    Set(flag.name, flag.value.value_or(""));
+  }
+  return others;
+}
+
+void Fields::ReadLines(std::string_view lines) const {
+  for (const std::string& line : Split(lines, '\n')) {
+    if (line.empty() || line.starts_with("#") || ReadFlags({line}).empty()) continue;
+    throw UsageError(StrCat("'", line, "' is not a flag; flags begin with --"));
   }
 }
 
 void Fields::Set(std::string_view name, std::string_view text) const {
-  if (const Field* field = Find(name)) return field->set(text);
-  FailUnknown(name);
+  const Field* field = Find(name);
+  if (field == nullptr) FailUnknown(name);
+  try {
+    field->set(text);
+  } catch (const Error& error) {
+    // What is wrong with a value begins with the name.
+    if (!std::string_view(error.what()).starts_with(name)) throw;
+    throw UsageError(StrCat("--", error.what()));
+  }
 }
 
 bool Fields::SetSwitch(std::string_view name) const {
@@ -197,7 +202,11 @@ bool Fields::SetSwitch(std::string_view name) const {
 }
 
 void Fields::FailUnknown(std::string_view name) const {
-  Fail("--", name, " is unknown; did you mean --", NearestName(name), "?");
+  if (fields_.empty()) throw UsageError(StrCat("--", name, " is not a flag"));
+  std::vector<std::string> names;
+  for (const Field& field : fields_) names.push_back(field.name);
+  throw UsageError(StrCat("--", name, " is not a flag; did you mean --",
+                          Nearest(names, std::string(name)), "?"));
 }
 
 }  // namespace pbnbrdf

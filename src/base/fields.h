@@ -91,6 +91,12 @@ Field ChoiceOrAuto(std::string name, std::optional<Enum>* value, const NameTable
       help + " (auto | " + JoinNames(table) + ")");
 }
 
+// A flag isn't one, has no value, or has one that can't be.
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
 // "--name=value" or "--name", with one dash or two, in its parts.
 struct FlagText {
   explicit FlagText(std::string_view text);
@@ -116,9 +122,6 @@ class Fields {
   // Null if there is none of that name.
   const Field* Find(std::string_view name) const;
 
-  // The name that differs from `name` in the fewest letters. There must be a field.
-  std::string NearestName(std::string_view name) const;
-
   // Throws Error "NAME = VALUE; must be ..." for the first value that is out of range.
   void Check() const;
 
@@ -128,17 +131,20 @@ class Fields {
   // "--name=value" for each field, a line each: read back by ReadLines.
   std::string Lines() const;
 
-  // Sets the fields that the lines name; later ones replace earlier ones; empty lines and those that
-  // begin with # are comments. A line "--name" or "--noname" sets a switch. Throws Error.
+  // Sets the fields that the flags among the words name: "--name=value", "--name value", and of switches
+  // "--name" and "--noname", with one dash or two; later ones replace earlier ones. Returns the other
+  // words. Throws UsageError.
+  std::vector<std::string> ReadFlags(const std::vector<std::string>& words) const;
+
+  // The same of lines that are a flag each; empty ones and those that begin with # are comments.
   void ReadLines(std::string_view lines) const;
 
-  // Sets one field; a name that is unknown throws Error with the nearest that is known.
+  // Sets one field. Throws UsageError: "--NAME: 'VALUE' is not ...", or that there is none of the name, with
+  // the nearest that there is.
   void Set(std::string_view name, std::string_view text) const;
 
-  // Sets a switch from its name, or from "no" and its name; false if there is no such switch.
-  bool SetSwitch(std::string_view name) const;
-
  private:
+  bool SetSwitch(std::string_view name) const;
   [[noreturn]] void FailUnknown(std::string_view name) const;
 
   std::string group_;

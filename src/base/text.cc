@@ -52,6 +52,12 @@ std::vector<std::string> Split(std::string_view text, char separator) {
   return parts;
 }
 
+std::string Join(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : std::string(separator)) + part;
+  return text;
+}
+
 double ParseNumber(std::string_view field, std::string_view text) {
   double value = 0.0;
   if (!ParseAll(Trim(text), &value) || !std::isfinite(value)) {

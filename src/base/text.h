@@ -12,6 +12,9 @@ std::vector<std::string> Split(std::string_view text, char separator);
 
 std::string_view Trim(std::string_view text);
 
+// "a,b,c" with "," for the separator.
+std::string Join(const std::vector<std::string>& parts, std::string_view separator);
+
 // Throws Error "<field>: '<text>' is not a finite number" unless all of `text` is one.
 double ParseNumber(std::string_view field, std::string_view text);
 

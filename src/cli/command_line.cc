@@ -1,9 +1,8 @@
 #include "command_line.h"
 
-#include <sstream>
+#include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "old_names.h"
 #include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf::cli {
@@ -12,90 +11,119 @@ namespace {
 constexpr int kMaxFlagfileDepth = 8;  // of flagfiles that name flagfiles: ends a circle of them
 constexpr std::uintmax_t kMaxFlagfileSize = 1 << 20;  // bytes; a flagfile has a few dozen lines
 
-template <typename... Parts>
-[[noreturn]] void FailUsage(const Parts&... parts) {
-  throw UsageError(StrCat(parts...));
+// What earlier versions called things.
+struct OldName {
+  std::string_view command, flag, value;  // "": any
+  std::string_view message;
+};
+
+constexpr OldName kOldNames[] = {
+    {"tabulate", "", "", "tabulate is now export --format=merl"},
+    {"values", "", "", "values is now eval"},
+    {"eval", "fit", "", "eval --fit is now measure --fit"},
+    {"measure", "eval_samples", "", "--eval_samples is now --samples"},
+    {"measure", "eval_seed", "", "--eval_seed is now --seed"},
+    {"fit", "model", "", "fit --model is now fit-model --model"},
+    {"fit", "lobes", "", "fit --lobes is now fit-model --lobes"},
+    {"fit", "scene", "", "fit --scene is now fit-scene --scene"},
+    {"fit", "out_dir", "", "fit --out_dir is now fit-scene --out_dir"},
+    {"", "solver", "tiny_lm", "--solver=tiny_lm is now --solver=lm"},
+    {"", "solver", "lbfgs", "--solver=lbfgs is now --solver=ceres_lbfgs"},
+    {"", "log_weight", "", "--log_weight=W is now --terms=log:W"},
+    {"", "chromaticity_weight", "", "--chromaticity_weight=W is now --terms=log,chromaticity:W"},
+    {"", "energy_weight", "", "--energy_weight=W is now --terms=log,energy:W"},
+    {"", "jacobian", "autodiff", "--jacobian=autodiff is now --solver=autodiff"},
+    {"", "jacobian", "condensed",
+     "--jacobian=condensed is what all other solvers do: leave it out"},
+};
+
+bool IsOneOf(std::string_view name, std::string_view any_or) {
+  return any_or.empty() || any_or == name;
 }
 
-class Parser {
- public:
-  explicit Parser(const Command& command) : command_(command) {}
+void CheckOldFlag(std::string_view command, std::string_view flag, std::string_view value) {
+  for (const OldName& old : kOldNames) {
+    if (old.flag == flag && IsOneOf(command, old.command) && IsOneOf(value, old.value)) {
+      throw UsageError(std::string(old.message));
+    }
+  }
+}
 
-  // depth: of the flagfile that the arguments come from.
-  void Parse(const Arguments& arguments, int depth) {
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-      if (!arguments[i].starts_with("-") || arguments[i] == "-") {
-        TakeArgument(arguments[i]);
+// depth: of the flagfile that the words come from.
+Arguments ReadWords(const Command& command, const Arguments& words, int depth);
+
+void ReadFlagfile(const Command& command, const std::string& path, int depth) {
+  if (depth > kMaxFlagfileDepth) throw UsageError(path + ": flagfiles are nested too deep");
+  const std::string lines = ReadFile(path, kMaxFlagfileSize);
+  try {
+    for (const std::string& line : Split(lines, '\n')) {
+      if (line.empty() || line.starts_with("#") || ReadWords(command, {line}, depth).empty())
         continue;
-      }
-      FlagText flag(arguments[i]);
-      CheckOldFlag(command_.name, flag.name, flag.value.value_or(""));
-      if (!flag.value && command_.flags.SetSwitch(flag.name)) continue;
-      const bool is_flagfile = flag.name == "flagfile";
-      if (!is_flagfile && command_.flags.Find(flag.name) == nullptr) FailUnknown(flag.name);
-      if (!flag.value) {
-        if (i + 1 == arguments.size()) FailUsage("--", flag.name, " needs a value");
-        flag.value = arguments[++i];
-        CheckOldFlag(command_.name, flag.name, *flag.value);
-      }
-      if (is_flagfile) {
-        ReadFlagfile(*flag.value, depth);
-      } else {
-        CheckFlags([&] { command_.flags.Set(flag.name, *flag.value); });
-      }
+      throw UsageError(StrCat("'", line, "' is not a flag"));
     }
+  } catch (const UsageError& error) {
+    throw UsageError(StrCat(path, ": ", error.what()));
   }
+}
 
-  const Arguments& arguments() const { return arguments_; }
-
- private:
-  void TakeArgument(const std::string& text) {
-    if (arguments_.size() == command_.arguments.size()) {
-      FailUsage("'", text, "' is not a flag; flags begin with --");
-    }
-    arguments_.push_back(text);
+Arguments ReadWords(const Command& command, const Arguments& words, int depth) {
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    const FlagText flag(*word);
+    const std::string next = word + 1 == words.end() ? "" : word[1];
+    if (word->starts_with("-")) CheckOldFlag(command.name, flag.name, flag.value.value_or(next));
   }
-
-  [[noreturn]] void FailUnknown(const std::string& name) const {
-    const bool has_flags = !command_.flags.all().empty();
-    FailUsage("--", name, " is not a flag of '", command_.name, "'",
-              has_flags ? "; did you mean --" + command_.flags.NearestName(name) + "?" : ".",
-              " See pbnbrdf ", command_.name, " --help");
+  Fields flags = command.flags;
+  if (!flags.all().empty()) {
+    flags.Add(Custom(
+        "flagfile",
+        [&](std::string_view path) { ReadFlagfile(command, std::string(path), depth + 1); },
+        [] { return ""; }, [] {}, ""));
   }
-
-  void ReadFlagfile(const std::string& path, int depth) {
-    if (depth >= kMaxFlagfileDepth) FailUsage(path, ": flagfiles are nested too deep");
-    std::istringstream in(ReadFile(path, kMaxFlagfileSize));
-    Arguments lines;
-    for (std::string line; std::getline(in, line);) {
-      const std::string text(Trim(line));
-      if (text.empty() || text.starts_with("#")) continue;
-      if (!text.starts_with("-")) FailUsage(path, ": '", text, "' is not a flag");
-      lines.push_back(text);
-    }
-    try {
-      Parse(lines, depth + 1);
-    } catch (const UsageError& error) {
-      FailUsage(path, ": ", error.what());
-    }
-  }
-
-  const Command& command_;
-  Arguments arguments_;
-};
+  return flags.ReadFlags(words);
+}
 
 }  // namespace
 
-Arguments ParseFlags(const Command& command, const Arguments& arguments) {
-  Parser parser(command);
-  parser.Parse(arguments, 0);
+void CheckOldCommand(std::string_view command) {
+  for (const OldName& old : kOldNames) {
+    if (old.flag.empty() && old.command == command) throw UsageError(std::string(old.message));
+  }
+}
+
+Arguments ParseFlags(const Command& command, const Arguments& words) try {
+  const Arguments arguments = ReadWords(command, words, 0);
   CheckFlags([&] {
     command.flags.CheckRequired();
     command.flags.Check();
   });
-  const std::size_t given = parser.arguments().size();
-  if (given < command.arguments.size()) FailUsage(command.arguments[given], " is missing");
-  return parser.arguments();
+  const std::size_t wanted = command.arguments.size();
+  if (arguments.size() > wanted) {
+    throw UsageError(StrCat("'", arguments[wanted], "' is not a flag; flags begin with --"));
+  }
+  if (arguments.size() < wanted) {
+    throw UsageError(command.arguments[arguments.size()] + " is missing");
+  }
+  return arguments;
+} catch (const UsageError& error) {
+  throw UsageError(StrCat(error.what(), " (see pbnbrdf ", command.name, " --help)"));
+}
+
+void CheckOutputs(const std::vector<Output>& outputs) {
+  for (auto a = outputs.begin(); a != outputs.end(); ++a) {
+    if (a->path.empty()) continue;
+    for (auto b = outputs.begin(); b != a; ++b) {
+      if (a->path == b->path) {
+        throw UsageError(StrCat("--", b->flag, " and --", a->flag, " name the same file"));
+      }
+    }
+  }
+  for (const Output& output : outputs) {
+    if (!output.path.empty()) CheckWritable(output.path);
+  }
+}
+
+std::string JsonText(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace pbnbrdf::cli

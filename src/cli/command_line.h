@@ -1,22 +1,16 @@
-// command_line.h: subcommands, and the parser of their flags.
+// command_line.h: subcommands, their flags and their output files.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/fields.h"
-#include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf::cli {
-
-// The command line itself is at fault: exit status 2 instead of 1.
-class UsageError : public Error {
- public:
-  using Error::Error;
-};
 
 // Runs what may find fault with the value of a flag. Throws UsageError in place of Error: with "--" before
 // the message, which begins with the flag's name.
@@ -33,26 +27,41 @@ using Arguments = std::vector<std::string>;
 
 struct Command {
   std::string name;
-  std::string summary;                       // one line
-  std::string usage;                         // examples, a line each
-  std::string notes;                         // more lines for --help, of any length
-  Arguments arguments;                       // what the positional arguments are
-  Fields flags;                              // of the options that the command owns
-  std::function<int(const Arguments&)> run;  // returns the exit status
+  std::string summary;                            // one line
+  std::string usage;                              // examples, a line each
+  std::string notes;                              // more lines for --help, of any length
+  Arguments arguments = {};                       // what the positional arguments are
+  Fields flags = {};                              // of the options that the command owns
+  std::function<int(const Arguments&)> run = {};  // returns the exit status
 
-  // Gives the command options of its own, the table of their fields, and what to do with them.
+  // The command with options of its own, the table of their fields, and what to do with them.
   template <typename Options>
-  void Takes(Fields (*fields)(Options*), int (*function)(const Options&, const Arguments&)) {
+  Command With(Fields (*fields)(Options*), int (*function)(const Options&, const Arguments&)) && {
     const auto options = std::make_shared<Options>();
     flags = fields(options.get());
     run = [options, function](const Arguments& given) { return function(*options, given); };
+    return std::move(*this);
   }
 };
 
-// Reads "--name=value", "--name value", "--switch", "--noswitch" and "--flagfile=FILE" (lines of the same,
-// # for comments; later settings replace earlier ones) into the command's options. Returns the positional
-// arguments, as many as the command has. Throws UsageError, also if a value is out of range or a required
-// flag is missing.
-Arguments ParseFlags(const Command& command, const Arguments& arguments);
+// Reads flags (Fields::ReadFlags) and "--flagfile=FILE", a file of such lines, into the command's options.
+// Returns the positional arguments, as many as the command has. Throws UsageError, also if a value is out of
+// range, a required flag is missing or a name is one of an earlier version: then it tells the new name.
+Arguments ParseFlags(const Command& command, const Arguments& words);
+
+// Throws UsageError if it is the name of a command of an earlier version.
+void CheckOldCommand(std::string_view command);
+
+struct Output {
+  std::string flag;  // without "--"
+  std::string path;  // "": not asked for
+};
+
+// To be called before the work. Throws UsageError if two flags name the same file, Error if one can't be
+// written.
+void CheckOutputs(const std::vector<Output>& outputs);
+
+// As a file has it: indented, whatever bytes its texts have.
+std::string JsonText(const nlohmann::ordered_json& json);
 
 }  // namespace pbnbrdf::cli

@@ -7,11 +7,11 @@
 
 #include "base/text.h"
 #include "commands.h"
-#include "lpips_weights.h"
-#include "outputs.h"
+#include "network/safetensors.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/open_image.h"
 #include "pbnbrdf/metrics/image_metrics.h"
+#include "pbnbrdf/metrics/lpips.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -83,6 +83,44 @@ void PrintText(const Measured& measured) {
             << " times the linear value, cut to [0, 1].\n";
 }
 
+// What the package calls the convolutions: AlexNet's, cut into slices.
+constexpr std::array<const char*, kLpipsLayers.size()> kConvolutions = {
+    "net.slice1.0", "net.slice2.3", "net.slice3.6", "net.slice4.8", "net.slice5.10"};
+
+// The tensor's values, which it loses.
+std::vector<double> Take(const std::string& path, const std::string& name,
+                         const std::vector<std::int64_t>& shape, SafetensorsFile* file) {
+  const auto found = file->tensors.find(name);
+  if (found == file->tensors.end()) {
+    Fail(
+        path, ": no tensor ", name, " (", ShapeText(shape),
+        "): not the weights of LPIPS with AlexNet; 'pbnbrdf compare --help' says how to make them");
+  }
+  if (found->second.shape != shape) {
+    Fail(path, ": tensor ", name, ": shape ", ShapeText(found->second.shape), ", expected ",
+         ShapeText(shape));
+  }
+  return std::move(found->second.values);
+}
+
+// Reads a safetensors file of F32 or F64 tensors named as in the state of the Python package lpips
+// (its LPIPS(net='alex')): net.slice1.0.weight, net.slice1.0.bias, ..., lin4.model.1.weight; others
+// are ignored. Throws Error as ReadSafetensors does, and if one is missing or of another shape.
+LpipsWeights ReadLpipsWeights(const std::string& path) {
+  SafetensorsFile file = ReadSafetensors(path);
+  LpipsWeights weights;
+  for (std::size_t k = 0; k < kLpipsLayers.size(); ++k) {
+    const LpipsLayerShape& shape = kLpipsLayers[k];
+    const std::string name = kConvolutions[k];
+    weights[k].kernels = Take(path, name + ".weight",
+                              {shape.units, shape.inputs, shape.kernel, shape.kernel}, &file);
+    weights[k].biases = Take(path, name + ".bias", {shape.units}, &file);
+    weights[k].head =
+        Take(path, StrCat("lin", k, ".model.1.weight"), {1, shape.units, 1, 1}, &file);
+  }
+  return weights;
+}
+
 // Of the shown images. Throws Error, which names the file of weights.
 double ShownLpips(const Image& reference, const Image& test, double exposure,
                   const LpipsWeights& weights, const std::string& file) {
@@ -128,39 +166,33 @@ int RunCompare(const CompareOptions& options, const Arguments& arguments) {
   return 0;
 }
 
-constexpr char kNotes[] =
-    "Images are OpenEXR files (channels R, G, B: half, float or integer) or PNG files (8 or 16 "
-    "bits, "
-    "taken as sRGB). Both must have the same size, at least 11 x 11. Values are never rounded.\n"
-    "mae, mse and rmse are errors of the linear values. psnr, ssim, flip, delta_e_2000 and lpips "
-    "are "
-    "errors of what a screen shows: both images are multiplied by one exposure, 1 / the 99th "
-    "percentile of the reference's luminance, and cut to [0, 1]; psnr, ssim and lpips compare "
-    "their "
-    "sRGB values. hdr_flip covers exposures from one that suits the reference's brightest pixel to "
-    "one that suits its median, so that highlights count.\n"
-    "JSON keys: mae mse rmse psnr ssim flip hdr_flip delta_e_2000, and lpips with --lpips; psnr is "
-    "null if the shown images are equal.\n"
-    "lpips is LPIPS 0.1 with AlexNet (Zhang et al. 2018), for images of at least 31 x 31. The "
-    "weights "
-    "don't come with this program; the Python package lpips has them:\n"
-    "  import lpips, safetensors.torch; w = lpips.LPIPS(net='alex').state_dict()\n"
-    "  safetensors.torch.save_file({k: v.clone() for k, v in w.items()}, 'alex.safetensors')\n";
-
 }  // namespace
 
 Command CompareCommand() {
-  Command command;
-  command.name = "compare";
-  command.summary = "measures how far an image is from a reference";
-  command.usage =
-      "  pbnbrdf compare reference.exr test.exr\n"
-      "  pbnbrdf compare reference.exr test.exr --json --error_map=err.exr\n"
-      "  pbnbrdf compare reference.exr test.exr --lpips=alex.safetensors\n";
-  command.notes = kNotes;
-  command.arguments = {"the reference image", "the test image"};
-  command.Takes(CompareFields, RunCompare);
-  return command;
+  return Command{
+      .name = "compare",
+      .summary = "measures how far an image is from a reference",
+      .usage = R"(  pbnbrdf compare reference.exr test.exr
+  pbnbrdf compare reference.exr test.exr --json --error_map=err.exr
+  pbnbrdf compare reference.exr test.exr --lpips=alex.safetensors
+)",
+      .notes =
+          R"(Images are OpenEXR files (channels R, G, B: half, float or integer) or PNG files (8 or 16 bits,
+taken as sRGB). Both must have the same size, at least 11 x 11. Values are never rounded.
+mae, mse and rmse are errors of the linear values. psnr, ssim, flip, delta_e_2000 and lpips are
+errors of what a screen shows: both images are multiplied by one exposure, 1 / the 99th percentile
+of the reference's luminance, and cut to [0, 1]; psnr, ssim and lpips compare their sRGB values.
+hdr_flip covers exposures from one that suits the reference's brightest pixel to one that suits its
+median, so that highlights count.
+JSON keys: mae mse rmse psnr ssim flip hdr_flip delta_e_2000, and lpips with --lpips; psnr is null
+if the shown images are equal.
+lpips is LPIPS 0.1 with AlexNet (Zhang et al. 2018), for images of at least 31 x 31. The weights
+don't come with this program; the Python package lpips has them:
+  import lpips, safetensors.torch; w = lpips.LPIPS(net='alex').state_dict()
+  safetensors.torch.save_file({k: v.clone() for k, v in w.items()}, 'alex.safetensors')
+)",
+      .arguments = {"the reference image", "the test image"}}
+      .With(CompareFields, RunCompare);
 }
 
 }  // namespace pbnbrdf::cli

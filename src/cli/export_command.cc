@@ -1,7 +1,6 @@
 // pbnbrdf export
 #include "commands.h"
 #include "material_options.h"
-#include "outputs.h"
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/open_brdf.h"
@@ -74,35 +73,33 @@ int RunExport(const ExportOptions& options, const Arguments&) {
 }  // namespace
 
 Command ExportCommand() {
-  Command command;
-  command.name = "export";
-  command.summary = "writes a fit, or any source of reflectance, as a file for other programs";
-  command.usage =
-      "  pbnbrdf export --fit=gold.safetensors --format=c --out=gold.h\n"
-      "  pbnbrdf export --fit=gold.safetensors --format=mitsuba --out=gold.py\n"
-      "  pbnbrdf export --material=builtin:satin-gold --format=merl --out=gold.binary\n";
-  command.notes = StrCat(
-      "Formats:\n"
-      "  npy      BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the "
-      "network "
-      "must have relu units, two hidden layers and the cartesian encoding\n"
-      "  h5       FILE.h5, a Keras file as NBRDF's are; the network must have relu units and the "
-      "cartesian encoding\n"
-      "  merl     FILE.binary, a table in the format of the MERL BRDF database, of an isotropic "
-      "network (--fit) or any isotropic source of reflectance (--material)\n"
-      "  csv      theta_i,phi_i,theta_o,phi_o (radians) and r,g,b on a grid of Rusinkiewicz angles "
-      "that is dense near the mirror direction\n"
-      "  c        a C99 header with void NAME_eval(const float wi[3], const float wo[3], float "
-      "rgb[3]); it needs <math.h> only\n"
-      "  glsl     vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later\n"
-      "  mitsuba  FILE.py, which registers the BSDF \"pbnbrdf\" in Mitsuba 3, and "
-      "FILE_weights.safetensors\n"
-      "  onnx     a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32\n"
-      "wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear "
-      "RGB in 1/sr, without the cosine (Mitsuba's own functions include it).\n\n",
-      kSourceNotes);
-  command.Takes(ExportFields, RunExport);
-  return command;
+  return Command{
+      .name = "export",
+      .summary = "writes a fit, or any source of reflectance, as a file for other programs",
+      .usage = R"(  pbnbrdf export --fit=gold.safetensors --format=c --out=gold.h
+  pbnbrdf export --fit=gold.safetensors --format=mitsuba --out=gold.py
+  pbnbrdf export --material=builtin:satin-gold --format=merl --out=gold.binary
+)",
+      .notes = StrCat(R"(Formats:
+  npy      BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the network must
+           have relu units, two hidden layers and the cartesian encoding
+  h5       FILE.h5, a Keras file as NBRDF's are; the network must have relu units and the cartesian
+           encoding
+  merl     FILE.binary, a table in the format of the MERL BRDF database, of an isotropic network
+           (--fit) or any isotropic source of reflectance (--material)
+  csv      theta_i,phi_i,theta_o,phi_o (radians) and r,g,b on a grid of Rusinkiewicz angles that is
+           dense near the mirror direction
+  c        a C99 header with void NAME_eval(const float wi[3], const float wo[3], float rgb[3]); it
+           needs <math.h> only
+  glsl     vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later
+  mitsuba  FILE.py, which registers the BSDF "pbnbrdf" in Mitsuba 3, and FILE_weights.safetensors
+  onnx     a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32
+wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear RGB in
+1/sr, without the cosine (Mitsuba's own functions include it).
+
+)",
+                      kSourceNotes)}
+      .With(ExportFields, RunExport);
 }
 
 }  // namespace pbnbrdf::cli

@@ -4,14 +4,11 @@
 
 #include "base/text.h"
 #include "commands.h"
-#include "fit_record.h"
-#include "interrupt.h"
 #include "material_options.h"
-#include "outputs.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/solve/problem_file.h"
 #include "pbnbrdf/sources/open_brdf.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "report.h"
 #include "solve/fit_fields.h"
 
@@ -139,19 +136,16 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
 }  // namespace
 
 Command FitCommand() {
-  Command command;
-  command.name = "fit";
-  command.summary = "fits a neural BRDF to a material";
-  command.usage =
-      "  pbnbrdf fit --material=gold.binary --out=gold.safetensors\n"
-      "  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary "
-      "--out=gold.safetensors\n";
-  command.notes =
-      StrCat(kSourceNotes,
-             "\nThe network's file and the summary record the flags that repeat the fit, bit for "
-             "bit. Ctrl-C ends the fit after the iteration and keeps the best network so far.\n");
-  command.Takes(FitCommandFields, RunFit);
-  return command;
+  return Command{.name = "fit",
+                 .summary = "fits a neural BRDF to a material",
+                 .usage = R"(  pbnbrdf fit --material=gold.binary --out=gold.safetensors
+  pbnbrdf fit --flagfile=problems/nbrdf.flags --material=gold.binary --out=gold.safetensors
+)",
+                 .notes = StrCat(kSourceNotes, R"(
+The network's file and the summary record the flags that repeat the fit, bit for bit. Ctrl-C ends
+the fit after the iteration and keeps the best network so far.
+)")}
+      .With(FitCommandFields, RunFit);
 }
 
 }  // namespace pbnbrdf::cli

@@ -5,7 +5,6 @@
 #include "commands.h"
 #include "material_options.h"
 #include "models/fit_analytic_fields.h"
-#include "outputs.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "problem/problem_fields.h"
@@ -111,17 +110,16 @@ int RunFitModel(const FitModelOptions& options, const Arguments&) {
 }  // namespace
 
 Command FitModelCommand() {
-  Command command;
-  command.name = "fit-model";
-  command.summary = "fits an analytic model to a material, to compare networks with";
-  command.usage =
-      "  pbnbrdf fit-model --model=ggx --material=gold.binary --out=gold.json\n"
-      "  pbnbrdf fit-model --model=ggx --lobes=2 --material=gold.binary --out=gold.json\n";
-  command.notes = StrCat(kSourceNotes,
-                         "\nThe file holds the model, its parameters and its errors, and is itself "
-                         "a source of reflectance. pbnbrdf info models: explains the models.\n");
-  command.Takes(FitModelFields, RunFitModel);
-  return command;
+  return Command{.name = "fit-model",
+                 .summary = "fits an analytic model to a material, to compare networks with",
+                 .usage = R"(  pbnbrdf fit-model --model=ggx --material=gold.binary --out=gold.json
+  pbnbrdf fit-model --model=ggx --lobes=2 --material=gold.binary --out=gold.json
+)",
+                 .notes = StrCat(kSourceNotes, R"(
+The file holds the model, its parameters and its errors, and is itself a source of reflectance.
+pbnbrdf info models: explains the models.
+)")}
+      .With(FitModelFields, RunFitModel);
 }
 
 }  // namespace pbnbrdf::cli

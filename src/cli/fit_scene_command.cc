@@ -1,21 +1,22 @@
 // pbnbrdf fit-scene
+#include <algorithm>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "base/timer.h"
 #include "commands.h"
-#include "fit_record.h"
-#include "interrupt.h"
-#include "outputs.h"
+#include "material_options.h"
 #include "pbnbrdf/base/files.h"
+#include "pbnbrdf/render/demand.h"
 #include "pbnbrdf/solve/problem_file.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "problem/problem_fields.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "render_summary.h"
 #include "report.h"
-#include "scene_plan.h"
 #include "solve/fit_fields.h"
 
 namespace pbnbrdf::cli {
@@ -61,6 +62,62 @@ std::string Flagfile(FitSceneOptions options, const FitProblem& fitted) {
   options.setup.problem = fitted;
   return Fields().Add(SceneField(&options)).Lines() + ProblemText(options.setup) +
          SceneFields(&options.setup.problem.sampling).Lines();
+}
+
+// Which fit a material of the scene gets.
+struct ScenePlan {
+  std::string name;
+  MaterialOptions material;
+  double share = 0.0, sensitivity = 0.0;  // MaterialDemand's
+  bool needed = false;
+  std::optional<SkipReason> skip_reason;  // none: the material is fitted
+  std::string why;                        // it is fitted or not, a sentence
+  FitProblem problem;
+};
+
+// An error of log(1 + f cos) changes the image by less than a hundredth of itself: an error ten times as
+// large as elsewhere shows less. Such a material gets a tenth of the samples and weights.
+constexpr double kMinSensitivity = 0.01;
+constexpr std::uint64_t kFewSamples = 6000;
+const std::vector<int> kSmallNetwork = {8, 8};
+
+// "35 %", "0.012 %"
+std::string Percent(double part) {
+  std::ostringstream text;
+  text << std::setprecision(2) << 100.0 * part << " %";
+  return text.str();
+}
+
+void MakeSmall(FitProblem* problem) {
+  FitProblem small = *problem;
+  small.network.hidden = kSmallNetwork;
+  if (small.Shape().num_weights() < problem->Shape().num_weights()) *problem = small;
+  problem->sampling.samples = std::min(problem->sampling.samples, kFewSamples);
+}
+
+// problem: what the flags ask for. A material that hardly changes the image gets a small network and few
+// samples, unless the flags ask for even fewer.
+ScenePlan PlanFit(const SceneMaterial& material, const MaterialDemand& demand,
+                  const FitProblem& problem) {
+  ScenePlan plan;
+  plan.name = material.name;
+  plan.material = {material.source, material.scale_to_albedo};
+  plan.share = demand.share;
+  plan.sensitivity = demand.sensitivity;
+  plan.needed = demand.reached;
+  plan.problem = problem;
+  if (!demand.reached) {
+    plan.skip_reason = demand.referenced ? SkipReason::kNotReached : SkipReason::kUnreferenced;
+    plan.why = demand.referenced ? "no path hits it" : "no shape has it";
+    return plan;
+  }
+  plan.problem.sampling.asked = demand.angles;
+  plan.why = StrCat("it reflects ", Percent(demand.share), " of the image's light");
+  if (demand.sensitivity < kMinSensitivity) {
+    MakeSmall(&plan.problem);
+    plan.why += " and hardly changes it: a small network and few samples";
+  }
+  return plan;
 }
 
 nlohmann::ordered_json PlanJson(const ScenePlan& plan, bool skips) {
@@ -170,25 +227,22 @@ int RunFitScene(const FitSceneOptions& options, const Arguments&) {
 }  // namespace
 
 Command FitSceneCommand() {
-  Command command;
-  command.name = "fit-scene";
-  command.summary = "fits a network to each material that the image of a scene shows";
-  command.usage =
-      "  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
-      "  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr\n";
-  command.notes =
-      "A quick render finds out which materials the image shows, and at which angles. Each of them "
-      "is fitted at these angles, by the flags above, and written to OUT_DIR/NAME.safetensors, "
-      "where "
-      "render --fits=OUT_DIR finds it. A material that hardly changes the image (a change of "
-      "log(1 + f cos) changes it by less than a hundredth of that) gets --hidden=8,8 and at most "
-      "6000 "
-      "samples. A material that the image doesn't show is not fitted.\n"
-      "The summary says of each material what was done and why, and records the flags that repeat "
-      "its "
-      "fit. Ctrl-C ends the fits and keeps the networks so far.\n";
-  command.Takes(FitSceneFields, RunFitScene);
-  return command;
+  return Command{
+      .name = "fit-scene",
+      .summary = "fits a network to each material that the image of a scene shows",
+      .usage = R"(  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits
+  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr
+)",
+      .notes =
+          R"(A quick render finds out which materials the image shows, and at which angles. Each of them is
+fitted at these angles, by the flags above, and written to OUT_DIR/NAME.safetensors, where render
+--fits=OUT_DIR finds it. A material that hardly changes the image (a change of log(1 + f cos)
+changes it by less than a hundredth of that) gets --hidden=8,8 and at most 6000 samples. A material
+that the image doesn't show is not fitted.
+The summary says of each material what was done and why, and records the flags that repeat its fit.
+Ctrl-C ends the fits and keeps the networks so far.
+)"}
+      .With(FitSceneFields, RunFitScene);
 }
 
 }  // namespace pbnbrdf::cli

@@ -102,17 +102,15 @@ int RunInfo(const Arguments& arguments) {
 }  // namespace
 
 Command InfoCommand() {
-  Command command;
-  command.name = "info";
-  command.summary = "says what a source of reflectance is";
-  command.usage =
-      "  pbnbrdf info gold.safetensors\n"
-      "  pbnbrdf info builtin:          lists the materials that come with the program\n"
-      "  pbnbrdf info models:           lists the analytic models and their parameters\n";
-  command.notes = kSourceNotes;
-  command.arguments = {"a file or another source"};
-  command.run = RunInfo;
-  return command;
+  return Command{.name = "info",
+                 .summary = "says what a source of reflectance is",
+                 .usage = R"(  pbnbrdf info gold.safetensors
+  pbnbrdf info builtin:          lists the materials that come with the program
+  pbnbrdf info models:           lists the analytic models and their parameters
+)",
+                 .notes = kSourceNotes,
+                 .arguments = {"a file or another source"},
+                 .run = RunInfo};
 }
 
 }  // namespace pbnbrdf::cli

@@ -34,25 +34,25 @@ auto AboutMaterial(const MaterialOptions& material, Function function) {
 }
 
 // How every command that reads a material explains --material.
-inline constexpr char kSourceNotes[] =
-    "Sources of reflectance:\n"
-    "  FILE.binary                  a table in the format of the MERL BRDF database\n"
-    "  FILE.bsdf                    a measurement of the RGL material database, RGB or spectral\n"
-    "  FILE.alta, FILE.dat          measurements in the text format of ALTA\n"
-    "  FILE.csv                     measurements at any directions: columns "
-    "theta_i,phi_i,theta_o,phi_o (radians; theta_i_deg, ...: degrees) or wi_x,wi_y,wi_z,wo_x,..., "
-    "and value or r,g,b: f in 1/sr. The material is taken for anisotropic if phi_i varies, unless "
-    "a "
-    "line '# isotropic' or '# anisotropic' says what it is\n"
-    "  sgd:PARAMETERS.csv#MATERIAL  the shifted gamma distribution model (Bagher et al. 2012)\n"
-    "  builtin:NAME                 a material that comes with the program; pbnbrdf info builtin: "
-    "lists them\n"
-    "  MODEL:NAME=VALUE,...         an analytic model with its parameters, such as "
-    "ggx:f0=1/0.78/0.34,alpha=0.2; pbnbrdf info models: lists them\n"
-    "  FILE.json                    an analytic model that pbnbrdf fit-model wrote\n"
-    "  FILE.safetensors             a network that pbnbrdf fit wrote\n"
-    "  FILE.h5                      a network of NBRDF (Sztrajman et al. 2021), saved by Keras\n"
-    "  BASEfc1.npy                  the same as NumPy files: BASE and fc1, fc2, fc3, b1, b2 or b3, "
-    "and .npy\n";
+inline constexpr char kSourceNotes[] = R"(Sources of reflectance:
+  FILE.binary                  a table in the format of the MERL BRDF database
+  FILE.bsdf                    a measurement of the RGL material database, RGB or spectral
+  FILE.alta, FILE.dat          measurements in the text format of ALTA
+  FILE.csv                     measurements at any directions: columns theta_i,phi_i,theta_o,phi_o
+                               (radians; theta_i_deg, ...: degrees) or wi_x,wi_y,wi_z,wo_x,..., and
+                               value or r,g,b: f in 1/sr. The material is taken for anisotropic if
+                               phi_i varies, unless a line '# isotropic' or '# anisotropic' says
+                               what it is
+  sgd:PARAMETERS.csv#MATERIAL  the shifted gamma distribution model (Bagher et al. 2012)
+  builtin:NAME                 a material that comes with the program; pbnbrdf info builtin: lists
+                               them
+  MODEL:NAME=VALUE,...         an analytic model with its parameters, such as
+                               ggx:f0=1/0.78/0.34,alpha=0.2; pbnbrdf info models: lists them
+  FILE.json                    an analytic model that pbnbrdf fit-model wrote
+  FILE.safetensors             a network that pbnbrdf fit wrote
+  FILE.h5                      a network of NBRDF (Sztrajman et al. 2021), saved by Keras
+  BASEfc1.npy                  the same as NumPy files: BASE and fc1, fc2, fc3, b1, b2 or b3, and
+                               .npy
+)";
 
 }  // namespace pbnbrdf::cli

@@ -68,15 +68,13 @@ int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
 }  // namespace
 
 Command MeasureCommand() {
-  Command command;
-  command.name = "measure";
-  command.summary = "measures a fit against its material: errors, reciprocity, energy";
-  command.usage =
-      "  pbnbrdf measure --fit=gold.safetensors --material=gold.binary\n"
-      "  pbnbrdf measure --fit=gold.safetensors --material=gold.binary --json\n";
-  command.notes = kSourceNotes;
-  command.Takes(MeasureCommandFields, RunMeasure);
-  return command;
+  return Command{.name = "measure",
+                 .summary = "measures a fit against its material: errors, reciprocity, energy",
+                 .usage = R"(  pbnbrdf measure --fit=gold.safetensors --material=gold.binary
+  pbnbrdf measure --fit=gold.safetensors --material=gold.binary --json
+)",
+                 .notes = kSourceNotes}
+      .With(MeasureCommandFields, RunMeasure);
 }
 
 }  // namespace pbnbrdf::cli

@@ -5,15 +5,13 @@
 
 #include "base/text.h"
 #include "commands.h"
-#include "interrupt.h"
 #include "material_options.h"
-#include "outputs.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/render/render.h"
 #include "pbnbrdf/sources/open_brdf.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "render_summary.h"
 
 namespace pbnbrdf::cli {
@@ -199,45 +197,41 @@ int RunRender(const RenderCommandOptions& options, const Arguments&) {
 }  // namespace
 
 Command RenderCommand() {
-  Command command;
-  command.name = "render";
-  command.summary = "renders a scene with any materials, fitted networks too";
-  command.usage =
-      "  pbnbrdf render --scene=problems/scenes/sphere.json --out=sphere.exr --png=sphere.png\n"
-      "  pbnbrdf render --scene=problems/scenes/sphere.json --environment=studio.exr \\\n"
-      "                 --material=surface=gold.safetensors --out=gold.exr\n"
-      "  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits\n"
-      "  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr\n"
-      "  pbnbrdf render --scene=problems/scenes/gallery.json --samples_per_pixel=4096 \\\n"
-      "                 --target_error=0.02 --out=gallery.exr --summary=gallery.json\n";
-  command.notes = StrCat(
-      "--material=NAME=SOURCE replaces the source of the scene's material NAME; several are "
-      "separated by semicolons. --fits=DIR replaces each material NAME for which there is "
-      "DIR/NAME.safetensors. Files that a scene names are in its folder; sources of materials may "
-      "also be elsewhere.\n"
-      "\n"
-      "Work that cannot change the image is skipped: materials that no path hits are not opened, "
-      "tiles that show no shape trace no rays, and BRDFs are not evaluated for directions below "
-      "the "
-      "horizon, for hidden lights, or for rays that lead to no light. The summary, printed at the "
-      "end and written to --summary=FILE.json, counts the work that was done and the work that was "
-      "skipped, and why. The time saved is estimated as the number skipped times the mean time of "
-      "what was done. With --no_skip nothing is skipped: the image is the same, bit for bit, but "
-      "all "
-      "materials must open.\n"
-      "\n"
-      "--target_error=E samples adaptively: a block of 4 x 4 pixels stops when each pixel has at "
-      "least 32 samples and a standard error of its mean luminance below E (mean + 0.01). That is "
-      "checked every 16 samples. --samples_per_pixel is then the maximum for a pixel.\n"
-      "\n"
-      "The OpenEXR file holds linear radiance, RGB as 32-bit floats, and its header says how it "
-      "was "
-      "made. The image depends on the seed, but not on the number of threads. After Ctrl-C the "
-      "current tiles are finished and the image so far is written.\n"
-      "\n",
-      kSourceNotes);
-  command.Takes(RenderFields, RunRender);
-  return command;
+  return Command{
+      .name = "render",
+      .summary = "renders a scene with any materials, fitted networks too",
+      .usage =
+          R"(  pbnbrdf render --scene=problems/scenes/sphere.json --out=sphere.exr --png=sphere.png
+  pbnbrdf render --scene=problems/scenes/sphere.json --environment=studio.exr \
+                 --material=surface=gold.safetensors --out=gold.exr
+  pbnbrdf fit-scene --scene=problems/scenes/one_of_many.json --out_dir=fits
+  pbnbrdf render --scene=problems/scenes/one_of_many.json --fits=fits --out=many.exr
+  pbnbrdf render --scene=problems/scenes/gallery.json --samples_per_pixel=4096 \
+                 --target_error=0.02 --out=gallery.exr --summary=gallery.json
+)",
+      .notes = StrCat(
+          R"(--material=NAME=SOURCE replaces the source of the scene's material NAME; several are separated by
+semicolons. --fits=DIR replaces each material NAME for which there is DIR/NAME.safetensors. Files
+that a scene names are in its folder; sources of materials may also be elsewhere.
+
+Work that cannot change the image is skipped: materials that no path hits are not opened, tiles that
+show no shape trace no rays, and BRDFs are not evaluated for directions below the horizon, for
+hidden lights, or for rays that lead to no light. The summary, printed at the end and written to
+--summary=FILE.json, counts the work that was done and the work that was skipped, and why. The time
+saved is estimated as the number skipped times the mean time of what was done. With --no_skip
+nothing is skipped: the image is the same, bit for bit, but all materials must open.
+
+--target_error=E samples adaptively: a block of 4 x 4 pixels stops when each pixel has at least 32
+samples and a standard error of its mean luminance below E (mean + 0.01). That is checked every 16
+samples. --samples_per_pixel is then the maximum for a pixel.
+
+The OpenEXR file holds linear radiance, RGB as 32-bit floats, and its header says how it was made.
+The image depends on the seed, but not on the number of threads. After Ctrl-C the current tiles are
+finished and the image so far is written.
+
+)",
+          kSourceNotes)}
+      .With(RenderFields, RunRender);
 }
 
 }  // namespace pbnbrdf::cli

@@ -1,11 +1,11 @@
-// report.h: the measures of a fit, as JSON and as text.
+// report.h: what a fit leaves behind besides its weights: measures, metadata and summary.
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "pbnbrdf/brdf/brdf.h"
+#include "material_options.h"
+#include "pbnbrdf/solve/fit.h"
 
 namespace pbnbrdf::cli {
 
@@ -23,5 +23,18 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
 
 // A line for each key, with its unit and meaning.
 std::string MeasuresText(const nlohmann::ordered_json& measures);
+
+struct FitSubject {
+  MaterialOptions material;
+  std::string flagfile;  // the flags that repeat the fit
+};
+
+// The network with the metadata that its file is to have. measures: MeasureFit's.
+NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
+                        const nlohmann::ordered_json& measures);
+
+// The measures, and after them how the fit went.
+nlohmann::ordered_json FitSummaryJson(const Fit& fit, const FitSubject& subject,
+                                      nlohmann::ordered_json measures);
 
 }  // namespace pbnbrdf::cli

@@ -1,9 +1,7 @@
-#include "export/c_source.h"
-
 #include <algorithm>
 
 #include "export/code.h"
-#include "export/source_text.h"
+#include "export/formats.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/network/mlp.h"
 

@@ -1,9 +1,8 @@
-#include "export/csv_table.h"
-
 #include <numbers>
 #include <vector>
 
 #include "base/text.h"
+#include "export/formats.h"
 #include "pbnbrdf/brdf/half_diff.h"
 
 namespace pbnbrdf {

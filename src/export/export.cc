@@ -2,11 +2,7 @@
 
 #include <filesystem>
 
-#include "export/c_source.h"
-#include "export/csv_table.h"
-#include "export/glsl_source.h"
-#include "export/mitsuba_plugin.h"
-#include "export/onnx_model.h"
+#include "export/formats.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/nbrdf_files.h"

@@ -1,7 +1,6 @@
-#include "export/glsl_source.h"
-
+#include "base/text.h"
 #include "export/code.h"
-#include "export/source_text.h"
+#include "export/formats.h"
 #include "kernels/minimax.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/network/mlp.h"
@@ -88,7 +87,7 @@ std::string Polynomial(const float (&coefficients)[kSize], const std::string& x)
 
 std::string EncodeBody(Encoding encoding) {
   const auto [statements, x] = PrintInputs(kGlsl, encoding);
-  return StrCat(statements, "  x0 = vec4(", ListText({x.begin(), x.begin() + 4}), ");\n",
+  return StrCat(statements, "  x0 = vec4(", Join({x.begin(), x.begin() + 4}, ", "), ");\n",
                 "  x1 = vec4(", x[4], ", ", x[5], ", 0.0, 0.0);\n");
 }
 
@@ -102,7 +101,7 @@ std::string Column(const LayerWeights& layer, int row, int column) {
     const bool exists = i < layer.out && column <= layer.in;
     numbers.push_back(exists ? Literal(SinglePrecision(layer.weight(i, column))) : "0.0");
   }
-  return ListText(numbers);
+  return Join(numbers, ", ");
 }
 
 // "mat4(...)", what takes the four values from `column` to the four units; column by column.
@@ -111,7 +110,7 @@ std::string Matrix(const LayerWeights& layer, int row, int column) {
   for (int j = column; j < column + 4; ++j) {
     columns.push_back(Column(layer, row, j < layer.in ? j : layer.in + 1));
   }
-  return StrCat("mat4(", ListText(columns), ")");
+  return StrCat("mat4(", Join(columns, ", "), ")");
 }
 
 // The vectors x<l+1>_0, x<l+1>_1, ... from x<l>_0, x<l>_1, ..., or z from the last ones.

@@ -1,8 +1,6 @@
-#include "export/mitsuba_plugin.h"
-
 #include "base/text.h"
 #include "export/code.h"
-#include "export/source_text.h"
+#include "export/formats.h"
 #include "mitsuba_plugin_text.h"
 #include "pbnbrdf/network/mlp.h"
 
@@ -33,7 +31,7 @@ std::string BytesLiteral(const std::string& bytes) {
 // A function of wi and wo that gives the list of inputs.
 std::string Encoder(std::string_view name, Encoding encoding) {
   const auto [statements, values] = PrintInputs(kPython, encoding);
-  return StrCat("def ", name, "(wi, wo):\n", statements, "    return [", ListText(values),
+  return StrCat("def ", name, "(wi, wo):\n", statements, "    return [", Join(values, ", "),
                 "]\n\n\n");
 }
 

@@ -31,6 +31,20 @@ std::string Reason(const std::exception& error) {
   return name_end == std::string::npos ? text : text.substr(name_end + 3);
 }
 
+// Runs functions of OpenEXR. What they throw becomes an Error that begins with `before`.
+template <typename Function>
+auto Translate(const std::string& before, Function function) {
+  try {
+    return function();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    Fail(before, Reason(error));
+  }
+}
+
 // What OpenEXR writes to, as it wants to go back and fill in where the lines are.
 class MemoryStream : public Imf::OStream {
  public:
@@ -132,29 +146,16 @@ Image ReadExr(const std::string& path) {
   // Of the process: OpenEXR has no other place for limits that hold before it takes memory.
   Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);
   Imf::Header::setMaxTileSize(kMaxSide, kMaxSide);
-  try {
+  return Translate(path + ": truncated or damaged OpenEXR file: ", [&] {
     Imf::InputFile file(path.c_str());
     return ReadPixels(path, file);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    Fail(path, ": truncated or damaged OpenEXR file: ", Reason(error));
-  }
+  });
 }
 
 std::string ExrBytes(const Image& image, const std::map<std::string, std::string>& metadata) {
   MemoryStream stream;
-  try {
-    WritePixels(image, MakeHeader(image, metadata), stream);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    Fail("an image of ", image.width, " x ", image.height, " pixels: ", Reason(error));
-  }
+  Translate(StrCat("an image of ", image.width, " x ", image.height, " pixels: "),
+            [&] { WritePixels(image, MakeHeader(image, metadata), stream); });
   return stream.TakeBytes();
 }
 

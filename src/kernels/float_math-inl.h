@@ -1,5 +1,5 @@
-// float_math-inl.h: elementary functions of vectors of float, cheaper than those of
-// hwy/contrib/math. Included once for each instruction set, after foreach_target.h.
+// float_math-inl.h: elementary functions of vectors of float, cheaper than those of hwy/contrib/math, and
+// the number of registers. Included once for each instruction set, after foreach_target.h.
 
 // Highway's own form of #pragma once for such files.
 #if defined(PBNBRDF_FLOAT_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -13,10 +13,14 @@
 
 #include "minimax.h"
 #include "tanh_table.h"
-#include "target-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// 32 vector registers rather than 16.
+inline constexpr bool kManyRegisters = HWY_MAX_BYTES >= 64 || HWY_ARCH_ARM_A64;
 
 // HWY_TARGET is smaller for better instruction sets.
 #undef PBNBRDF_HAS_AVX512

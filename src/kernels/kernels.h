@@ -1,5 +1,5 @@
 // kernels.h: what the kernels share. Kernels are the inner loops, for batches of kBatch samples:
-// passes.h, products.h, losses.h, adam_step.h. Each is compiled for several instruction sets; a call
+// passes.h, products.h, losses.h. Each is compiled for several instruction sets; a call
 // runs the best one that the processor has. T is float or double.
 //
 // Two layouts: by feature, x[i * kBatch + n], for passes through a network; by sample,

@@ -11,7 +11,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "target-inl.h"
+#include "float_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
@@ -110,6 +110,27 @@ void VectorReflectanceSums(const float* z, const float* weights, float* sums) {
   }
 }
 
+void VectorAdamStep(std::size_t count, const float* gradient, float rate, float beta1, float beta2,
+                    float epsilon, float* mean, float* square, float* x) {
+  const F d;
+  const auto b1 = hn::Set(d, beta1), b2 = hn::Set(d, beta2);
+  // The moments of a dead unit would decay to subnormal numbers, which are slow.
+  const auto without_tiny = [&](auto value) {
+    return hn::IfThenElseZero(hn::Gt(hn::Abs(value), hn::Set(d, 1e-35f)), value);
+  };
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto g = hn::LoadU(d, gradient + i);
+    const auto m = hn::MulAdd(b1, hn::Sub(hn::LoadU(d, mean + i), g), g);
+    const auto g2 = hn::Mul(g, g);
+    const auto v = hn::MulAdd(b2, hn::Sub(hn::LoadU(d, square + i), g2), g2);
+    const auto root = hn::Add(hn::Sqrt(v), hn::Set(d, epsilon));
+    const auto step = hn::Div(hn::Mul(hn::Set(d, rate), m), root);
+    hn::StoreU(without_tiny(m), d, mean + i);
+    hn::StoreU(without_tiny(v), d, square + i);
+    hn::StoreU(hn::Sub(hn::LoadU(d, x + i), step), d, x + i);
+  }
+}
+
 }  // namespace
 }  // namespace pbnbrdf::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -121,6 +142,7 @@ HWY_EXPORT(VectorLogResiduals);
 HWY_EXPORT(VectorLogGradient);
 HWY_EXPORT(VectorChromaticityGradient);
 HWY_EXPORT(VectorReflectanceSums);
+HWY_EXPORT(VectorAdamStep);
 
 void LogResiduals(const double* z, const double* targets, const double* cos_i, double* residuals,
                   double* slopes) {
@@ -139,6 +161,12 @@ void AddAbsoluteChromaticityGradient(const float* z, const float* cos_i, const f
 
 void AddReflectanceSums(const float* z, const float* weights, float* sums) {
   HWY_DYNAMIC_DISPATCH(VectorReflectanceSums)(z, weights, sums);
+}
+
+void AdamStep(std::size_t count, const float* gradient, float rate, float beta1, float beta2,
+              float epsilon, float* mean, float* square, float* x) {
+  HWY_DYNAMIC_DISPATCH(VectorAdamStep)
+  (count, gradient, rate, beta1, beta2, epsilon, mean, square, x);
 }
 
 }  // namespace pbnbrdf::kernels

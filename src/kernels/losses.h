@@ -1,5 +1,8 @@
-// losses.h: terms of the objective and their gradients, from a network's outputs z. Layouts: kernels.h.
+// losses.h: terms of the objective and their gradients, from a network's outputs z, and the step of Adam.
+// Layouts: kernels.h.
 #pragma once
+
+#include <cstddef>
 
 #include "kernels/kernels.h"
 
@@ -27,5 +30,12 @@ void AddAbsoluteChromaticityGradient(const float* z, const float* cos_i, const f
 // sums[c] += the sum over kBatch samples of weights[n] max(0, expm1(z[c][n])), c < 3: a part of a
 // directional albedo. By feature: z 3 x kBatch.
 void AddReflectanceSums(const float* z, const float* weights, float* sums);
+
+// A step of Adam. The caller corrects the bias of mean and square, through rate and epsilon:
+//   mean = beta1 mean + (1 - beta1) g,  square = beta2 square + (1 - beta2) g^2,
+//   x -= rate mean / (sqrt(square) + epsilon).
+// A mean or square below 1e-35 becomes 0. count: a multiple of kPad.
+void AdamStep(std::size_t count, const float* gradient, float rate, float beta1, float beta2,
+              float epsilon, float* mean, float* square, float* x);
 
 }  // namespace pbnbrdf::kernels

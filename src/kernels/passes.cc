@@ -10,7 +10,6 @@
 #include <hwy/highway.h>
 
 #include "float_math-inl.h"
-#include "target-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
@@ -134,6 +133,8 @@ PBNBRDF_KERNELS(float, F)
 PBNBRDF_KERNELS(double, D)
 #undef PBNBRDF_KERNELS
 
+const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
+
 }  // namespace
 }  // namespace pbnbrdf::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -176,6 +177,9 @@ namespace pbnbrdf::kernels {
 PBNBRDF_DISPATCH(float, F)
 PBNBRDF_DISPATCH(double, D)
 #undef PBNBRDF_DISPATCH
+
+HWY_EXPORT(TargetName);
+const char* InstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
 
 }  // namespace pbnbrdf::kernels
 #endif  // HWY_ONCE

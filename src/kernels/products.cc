@@ -9,7 +9,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "target-inl.h"
+#include "float_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {

@@ -24,12 +24,6 @@ constexpr auto AllModels(std::index_sequence<I...>) {
 
 constexpr auto kModels = AllModels(std::make_index_sequence<std::tuple_size_v<AnalyticFormulas>>());
 
-int SizeOfTable(std::span<const ModelParameter> table) {
-  int size = 0;
-  for (const ModelParameter& parameter : table) size += parameter.size;
-  return size;
-}
-
 std::size_t NumScalars(const AnalyticModel& model, int lobes) {
   return static_cast<std::size_t>(model.BaseSize() + lobes * model.LobeSize());
 }
@@ -73,12 +67,6 @@ std::vector<std::string> KnownNames(const std::vector<PlacedParameter>& all) {
   return names;
 }
 
-std::string Joined(const std::vector<std::string>& names) {
-  std::string joined;
-  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
-  return joined;
-}
-
 void SetScalars(const std::string& name, const std::vector<double>& values,
                 const PlacedParameter& placed, std::vector<double>* scalars) {
   const std::size_t size = static_cast<std::size_t>(placed.parameter->size);
@@ -108,8 +96,8 @@ std::string TextOf(const AnalyticModel& model,
 
 }  // namespace
 
-int AnalyticModel::BaseSize() const { return SizeOfTable(base); }
-int AnalyticModel::LobeSize() const { return SizeOfTable(lobe); }
+int AnalyticModel::BaseSize() const { return SizeOf(base); }
+int AnalyticModel::LobeSize() const { return SizeOf(lobe); }
 
 std::span<const AnalyticModel> AnalyticModels() { return kModels; }
 
@@ -119,7 +107,7 @@ const AnalyticModel& FindAnalyticModel(std::string_view name) {
   }
   const std::vector<std::string> names = ModelNames();
   Fail("model '", name, "' is unknown; did you mean ", Nearest(names, std::string(name)),
-       "? There are ", Joined(names));
+       "? There are ", Join(names, ", "));
 }
 
 bool NamesAnalyticModel(const std::string& text) {
@@ -150,7 +138,7 @@ std::vector<PlacedParameter> PlacedParameters(const AnalyticModel& model, int lo
 
 AnalyticBrdf::AnalyticBrdf(const AnalyticModel& model, int lobes, std::vector<double> parameters)
     : model_(&model), lobes_(lobes), parameters_(std::move(parameters)) {
-  const int least = model.lobe.empty() ? 0 : 1, most = model.lobe.empty() ? 0 : kMostLobes;
+  const int least = model.lobe.empty() ? 0 : 1, most = model.lobe.empty() ? 0 : kMaxLobes;
   if (lobes < least || lobes > most) {
     Fail(model.name, ": ", lobes, " lobes; must be ", least, " to ", most);
   }
@@ -183,7 +171,7 @@ AnalyticBrdf AnalyticBrdf::FromValues(const std::string& name, const Values& val
     if (places.empty()) {
       const std::vector<std::string> known = KnownNames(all);
       Fail(model.name, ": no parameter '", key, "'; did you mean ", Nearest(known, key),
-           "? It has ", Joined(known));
+           "? It has ", Join(known, ", "));
     }
     for (const PlacedParameter& placed : places) {
       if (!given.insert(placed.Name()).second) {

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::uintmax_t kLargestFile = 1 << 20;
+constexpr std::uintmax_t kMaxFileSize = 1 << 20;
 
 std::vector<double> NumbersOf(const std::string& name, const ordered_json& value) {
   std::vector<double> numbers;
@@ -36,7 +36,7 @@ AnalyticBrdf FromJson(const ordered_json& json) {
 }  // namespace
 
 AnalyticBrdf AnalyticBrdf::Read(const std::string& path) {
-  const ordered_json json = ordered_json::parse(ReadFile(path, kLargestFile), nullptr,
+  const ordered_json json = ordered_json::parse(ReadFile(path, kMaxFileSize), nullptr,
                                                 /*allow_exceptions=*/false);
   try {
     if (json.is_discarded()) Fail("not a JSON file");

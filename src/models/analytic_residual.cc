@@ -2,6 +2,7 @@
 
 #include <ceres/dynamic_autodiff_cost_function.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "models/analytic_formulas.h"
@@ -11,12 +12,12 @@ namespace pbnbrdf {
 namespace {
 
 constexpr int kStride = 12;  // derivatives at a time
-constexpr std::size_t kMostScalars = 24;
+constexpr std::size_t kMaxScalars = 24;
 
 template <typename Formula>
 class AnalyticResidual {
  public:
-  static_assert(SizeOf(Formula::kBase) + kMostLobes * SizeOf(Formula::kLobe) <= kMostScalars);
+  static_assert(SizeOf(Formula::kBase) + kMaxLobes * SizeOf(Formula::kLobe) <= kMaxScalars);
 
   AnalyticResidual(int lobes, const FreeParameters& parameters, const BrdfSample& sample)
       : lobes_(lobes), parameters_(parameters), geometry_(sample.pair), cos_i_(CosI(sample.pair)) {
@@ -27,7 +28,7 @@ class AnalyticResidual {
   template <typename T>
   bool operator()(T const* const* numbers, T* residuals) const {
     using std::isfinite, std::log1p;
-    std::array<T, kMostScalars> scalars;
+    std::array<T, kMaxScalars> scalars;
     parameters_.ToScalars(numbers[0], scalars.data());
     const std::array<T, 3> f = EvaluateFormula<Formula>(geometry_, scalars.data(), lobes_);
     for (int c = 0; c < 3; ++c) {
@@ -71,6 +72,43 @@ Result MakeByName(std::string_view name, std::index_sequence<I...>, int lobes,
 }
 
 }  // namespace
+
+FreeParameters::FreeParameters(const AnalyticModel& model, int lobes, bool isotropic) {
+  for (const PlacedParameter& placed : PlacedParameters(model, lobes)) {
+    const ModelParameter& parameter = *placed.parameter;
+    Rule rule = parameter.logarithmic ? Rule::kLogarithmic : Rule::kLinear;
+    if (isotropic && parameter.when_isotropic == WhenIsotropic::kAsPrevious) {
+      rule = Rule::kAsPrevious;
+    } else if (isotropic && parameter.when_isotropic == WhenIsotropic::kZero) {
+      rule = Rule::kZero;
+    }
+    for (int c = 0; c < parameter.size; ++c) {
+      rules_.push_back(rule);
+      scalar_lower_.push_back(parameter.lower);
+      scalar_upper_.push_back(parameter.upper);
+    }
+  }
+  lower_ = FromScalars(scalar_lower_);
+  upper_ = FromScalars(scalar_upper_);
+}
+
+std::vector<double> FreeParameters::ToBoundedScalars(const std::vector<double>& numbers) const {
+  std::vector<double> scalars(num_scalars());
+  ToScalars(numbers.data(), scalars.data());
+  for (std::size_t i = 0; i < scalars.size(); ++i) {
+    scalars[i] = std::clamp(scalars[i], scalar_lower_[i], scalar_upper_[i]);
+  }
+  return scalars;
+}
+
+std::vector<double> FreeParameters::FromScalars(const std::vector<double>& scalars) const {
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    if (rules_[i] == Rule::kLinear) numbers.push_back(scalars[i]);
+    if (rules_[i] == Rule::kLogarithmic) numbers.push_back(std::log(scalars[i]));
+  }
+  return numbers;
+}
 
 std::unique_ptr<ceres::CostFunction> MakeAnalyticResidual(const AnalyticModel& model, int lobes,
                                                           const FreeParameters& parameters,

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/names.h"
 #include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
@@ -94,12 +94,7 @@ constexpr BuiltinMaterial kMaterials[] = {
 std::span<const BuiltinMaterial> BuiltinMaterials() { return kMaterials; }
 
 std::unique_ptr<Brdf> MakeBuiltin(std::string_view name) {
-  std::string names;
-  for (const BuiltinMaterial& material : kMaterials) {
-    if (material.name == name) return material.make();
-    names += StrCat(names.empty() ? "" : " | ", material.name);
-  }
-  Fail("builtin:", name, " is not one of ", names);
+  return FindNamed(kMaterials, "builtin:", name).make();
 }
 
 }  // namespace pbnbrdf

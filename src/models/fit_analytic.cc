@@ -23,7 +23,7 @@ namespace {
 // Of the starts: a wide loss leads from afar, and few iterations tell which are worth more.
 constexpr double kFirstLossScale = 0.03;
 constexpr int kFirstIterations = 40;
-constexpr std::size_t kMostFinalists = 2;
+constexpr std::size_t kMaxFinalists = 2;
 
 // A point that a stage reached.
 struct Candidate {
@@ -119,7 +119,7 @@ Candidate FitLobes(const AnalyticFitter& fitter, const AnalyticFitOptions& optio
   const double first_scale = std::max(kFirstLossScale, options.loss_scale);
   const auto first = samples.first(std::min(samples.size(), options.first_samples));
   RunAll(fitter, {first, first_scale, kFirstIterations, 1e-4}, arena, &candidates);
-  candidates.resize(std::min(candidates.size(), kMostFinalists));
+  candidates.resize(std::min(candidates.size(), kMaxFinalists));
   candidates.insert(candidates.end(), at_hand.begin(), at_hand.end());
   RunAll(fitter, {samples, options.loss_scale, options.max_iterations, options.function_tolerance},
          arena, &candidates);
@@ -131,7 +131,7 @@ Candidate FitLobes(const AnalyticFitter& fitter, const AnalyticFitOptions& optio
 Fields AnalyticFitFields(AnalyticFitOptions* options) {
   Fields fields;
   fields.Group("The fit");
-  fields.AddCommon(Integer("lobes", &options->lobes, Between(1, kMostLobes),
+  fields.AddCommon(Integer("lobes", &options->lobes, Between(1, kMaxLobes),
                            "number of lobes of the model, 1 or 2"));
   fields.Add(Number("loss_scale", &options->loss_scale, Above(0.0),
                     "residual at which the robust loss turns from square to linear"));

@@ -4,13 +4,15 @@
 #include <cmath>
 
 #include "network/batched_mlp.h"
-#include "network/fast_neural_brdf.h"
+#include "network/evaluation.h"
 #include "network/safetensors.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf {
 namespace {
+
+using kernels::kBatch;
 
 constexpr std::string_view kOutputUnit = "expm1";
 
@@ -62,6 +64,49 @@ NetworkShape ReadShape(const std::string& path, const SafetensorsFile& file) {
   } catch (const Error& error) {
     Fail(path, ": ", error.what());
   }
+}
+
+// What SinglePrecision gives.
+class FastNeuralBrdf final : public Brdf {
+ public:
+  // Weights beyond the range of float become infinite, which makes the value 0 or the largest.
+  explicit FastNeuralBrdf(const NeuralBrdf& network);
+
+  void EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                         std::span<Rgb> values) const override;
+  bool IsIsotropic() const override { return pbnbrdf::IsIsotropic(shape_.encoding()); }
+  bool IsReciprocal() const override { return pbnbrdf::IsReciprocal(shape_.encoding()); }
+  int NumChannels() const override { return shape_.num_outputs(); }
+  std::string Description() const override { return description_; }
+
+ private:
+  NetworkShape shape_;
+  AlignedVector<float> weights_;
+  std::string description_;
+};
+
+FastNeuralBrdf::FastNeuralBrdf(const NeuralBrdf& network)
+    : shape_(network.shape()),
+      weights_(network.weights().begin(), network.weights().end()),
+      description_(StrCat(network.Description(), ", single precision")) {}
+
+void FastNeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
+                                       std::span<Rgb> values) const {
+  BatchedMlp<float> mlp(shape_, /*rows=*/0);
+  AlignedVector<float> inputs(shape_.in(0) * kBatch);
+  const auto evaluate = [&](const DirectionPair* from, Rgb* to) {
+    EncodeBatch(shape_.encoding(), from, inputs.data());
+    mlp.Forward(weights_.data(), inputs.data());
+    ReflectanceBatch(mlp.output(), to);
+  };
+  std::size_t n = 0;
+  for (; n + kBatch <= pairs.size(); n += kBatch) evaluate(&pairs[n], &values[n]);
+  if (n == pairs.size()) return;
+  std::array<DirectionPair, kBatch> rest = {};
+  std::array<Rgb, kBatch> rest_values;
+  std::copy(pairs.begin() + n, pairs.end(), rest.begin());
+  evaluate(rest.data(), rest_values.data());
+  std::copy_n(rest_values.begin(), pairs.size() - n, values.begin() + n);
 }
 
 }  // namespace
@@ -131,7 +176,6 @@ void NeuralBrdf::Write(const std::string& path) const { WriteFile(path, Serializ
 
 void NeuralBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                    std::span<Rgb> values) const {
-  constexpr int kBatch = kernels::kBatch;
   BatchedMlp<double> mlp(shape_, 0);
   AlignedVector<double> input(kEncodedSize * kBatch);
   for (std::size_t first = 0; first < pairs.size(); first += kBatch) {

@@ -107,8 +107,4 @@ std::string SafetensorsBytes(const SafetensorsFile& file) {
   return bytes + text + data;
 }
 
-void WriteSafetensors(const std::string& path, const SafetensorsFile& file) {
-  WriteFile(path, SafetensorsBytes(file));
-}
-
 }  // namespace pbnbrdf

@@ -22,7 +22,4 @@ SafetensorsFile ReadSafetensors(const std::string& path);
 // The bytes of a file of F64 tensors.
 std::string SafetensorsBytes(const SafetensorsFile& file);
 
-// Writes them. Throws Error.
-void WriteSafetensors(const std::string& path, const SafetensorsFile& file);
-
 }  // namespace pbnbrdf

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 
-#include "arena.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
 #include "tiles.h"

@@ -50,22 +50,11 @@ std::string JsonValue::Text() const {
   return json_->get<std::string>();
 }
 
-double JsonValue::Number() const {
+double JsonValue::Number(const Range& range) const {
   if (!json_->is_number()) Refuse("expected a number, found ", Quoted(*json_));
   const double value = json_->get<double>();
   if (!std::isfinite(value)) Refuse("must be finite");
-  return value;
-}
-
-double JsonValue::Positive() const {
-  const double value = Number();
-  if (!(value > 0.0)) Refuse("is ", value, "; must be > 0");
-  return value;
-}
-
-double JsonValue::NotNegative() const {
-  const double value = Number();
-  if (!(value >= 0.0)) Refuse("is ", value, "; must be >= 0");
+  if (!range.Holds(value)) Refuse("is ", value, "; must be ", range.Text());
   return value;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pbnbrdf/base/error.h"
+#include "base/fields.h"
 #include "pbnbrdf/brdf/direction.h"
 
 namespace pbnbrdf {
@@ -44,9 +44,7 @@ class JsonValue {
 
   // Each refuses a value of another type or out of its range.
   std::string Text() const;
-  double Number() const;
-  double Positive() const;
-  double NotNegative() const;
+  double Number(const Range& range = Any()) const;
   int Whole(int min, int max) const;
   Vec3 Vector() const;     // three numbers
   Vec3 Direction() const;  // three numbers, not all 0, normalized

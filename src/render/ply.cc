@@ -12,30 +12,43 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+// Reads a number of type T from its bytes.
+template <typename T>
+double Read(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return static_cast<double>(value);
+}
 
-constexpr NameTable<Type, 16> kTypes = {{{"char", Type::kInt8},
-                                         {"int8", Type::kInt8},
-                                         {"uchar", Type::kUint8},
-                                         {"uint8", Type::kUint8},
-                                         {"short", Type::kInt16},
-                                         {"int16", Type::kInt16},
-                                         {"ushort", Type::kUint16},
-                                         {"uint16", Type::kUint16},
-                                         {"int", Type::kInt32},
-                                         {"int32", Type::kInt32},
-                                         {"uint", Type::kUint32},
-                                         {"uint32", Type::kUint32},
-                                         {"float", Type::kFloat},
-                                         {"float32", Type::kFloat},
-                                         {"double", Type::kDouble},
-                                         {"float64", Type::kDouble}}};
+struct Type {
+  std::string_view name;
+  std::size_t size;
+  double (*read)(const char* bytes);
+};
+
+template <typename T>
+constexpr Type TypeOf(std::string_view name) {
+  return {name, sizeof(T), Read<T>};
+}
+
+constexpr Type kTypes[] = {TypeOf<std::int8_t>("char"),     TypeOf<std::int8_t>("int8"),
+                           TypeOf<std::uint8_t>("uchar"),   TypeOf<std::uint8_t>("uint8"),
+                           TypeOf<std::int16_t>("short"),   TypeOf<std::int16_t>("int16"),
+                           TypeOf<std::uint16_t>("ushort"), TypeOf<std::uint16_t>("uint16"),
+                           TypeOf<std::int32_t>("int"),     TypeOf<std::int32_t>("int32"),
+                           TypeOf<std::uint32_t>("uint"),   TypeOf<std::uint32_t>("uint32"),
+                           TypeOf<float>("float"),          TypeOf<float>("float32"),
+                           TypeOf<double>("double"),        TypeOf<double>("float64")};
 
 struct Property {
   std::string name;
-  Type type;
-  bool is_list = false;
-  Type count_type = Type::kUint8;
+  const Type* type;
+  const Type* count_type = nullptr;  // of a list
+
+  bool IsList() const { return count_type != nullptr; }
+  bool IsIndices() const {
+    return IsList() && (name == "vertex_indices" || name == "vertex_index");
+  }
 };
 
 struct Element {
@@ -49,41 +62,16 @@ class Values {
  public:
   Values(std::string_view data, bool is_text) : data_(data), is_text_(is_text) {}
 
-  double Next(Type type) {
+  double Next(const Type& type) {
     if (is_text_) return ParseNumber("value", Word());
-    switch (type) {
-      case Type::kInt8:
-        return Take<std::int8_t>();
-      case Type::kUint8:
-        return Take<std::uint8_t>();
-      case Type::kInt16:
-        return Take<std::int16_t>();
-      case Type::kUint16:
-        return Take<std::uint16_t>();
-      case Type::kInt32:
-        return Take<std::int32_t>();
-      case Type::kUint32:
-        return Take<std::uint32_t>();
-      case Type::kFloat:
-        return Take<float>();
-      case Type::kDouble:
-        return Take<double>();
-    }
-    return 0.0;
+    if (left() < type.size) Fail("truncated");
+    at_ += type.size;
+    return type.read(data_.data() + at_ - type.size);
   }
 
   std::size_t left() const { return data_.size() - at_; }
 
  private:
-  template <typename T>
-  double Take() {
-    if (left() < sizeof(T)) Fail("truncated");
-    T value;
-    std::memcpy(&value, data_.data() + at_, sizeof(T));
-    at_ += sizeof(T);
-    return static_cast<double>(value);
-  }
-
   std::string_view Word() {
     constexpr std::string_view kBlank = " \t\r\n";
     const std::size_t begin = data_.find_first_not_of(kBlank, at_);
@@ -158,10 +146,10 @@ class PlyParser {
     if (elements_.empty()) Fail("header: a property before the first element");
     std::vector<Property>& properties = elements_.back().properties;
     if (words.size() == 3) {
-      properties.push_back({words[2], ParseName(kTypes, "property type", words[1])});
+      properties.push_back({words[2], &FindNamed(kTypes, "property type=", words[1])});
     } else if (words.size() == 5 && words[1] == "list") {
-      properties.push_back({words[4], ParseName(kTypes, "property type", words[3]), true,
-                            ParseName(kTypes, "property type", words[2])});
+      properties.push_back({words[4], &FindNamed(kTypes, "property type=", words[3]),
+                            &FindNamed(kTypes, "property type=", words[2])});
     } else {
       Fail("header: a property of ", words.size(), " words");
     }
@@ -172,11 +160,11 @@ class PlyParser {
     for (const Element& element : elements_) {
       for (const Property& property : element.properties) {
         const std::string& name = property.name;
-        if (element.name == "vertex" && !property.is_list) {
+        if (element.name == "vertex" && !property.IsList()) {
           vertex_names += name == "x" || name == "y" || name == "z";
           normal_names += name == "nx" || name == "ny" || name == "nz";
         }
-        faces += element.name == "face" && IsIndices(property);
+        faces += element.name == "face" && property.IsIndices();
       }
     }
     if (vertex_names != 3) Fail("element vertex must have x, y and z once each");
@@ -184,26 +172,20 @@ class PlyParser {
     has_normals_ = normal_names == 3;
   }
 
-  static bool IsIndices(const Property& property) {
-    return property.is_list &&
-           (property.name == "vertex_indices" || property.name == "vertex_index");
-  }
-
   void Row(const Element& element, std::size_t number, Values* values) try {
     Vec3 position, normal;
+    const std::pair<std::string_view, double*> numbers[] = {{"x", &position.x}, {"y", &position.y},
+                                                            {"z", &position.z}, {"nx", &normal.x},
+                                                            {"ny", &normal.y},  {"nz", &normal.z}};
     for (const Property& property : element.properties) {
-      if (property.is_list) {
-        ReadList(element.name == "face" && IsIndices(property), property, values);
+      if (property.IsList()) {
+        ReadList(element.name == "face" && property.IsIndices(), property, values);
         continue;
       }
-      const double value = values->Next(property.type);
-      const std::string& name = property.name;
-      if (name == "x") position.x = value;
-      if (name == "y") position.y = value;
-      if (name == "z") position.z = value;
-      if (name == "nx") normal.x = value;
-      if (name == "ny") normal.y = value;
-      if (name == "nz") normal.z = value;
+      const double value = values->Next(*property.type);
+      for (const auto& [name, to] : numbers) {
+        if (property.name == name) *to = value;
+      }
     }
     if (element.name != "vertex") return;
     mesh_.positions.push_back(position);
@@ -214,14 +196,14 @@ class PlyParser {
 
   // A face becomes a fan of triangles.
   void ReadList(bool is_face, const Property& property, Values* values) {
-    const double count = values->Next(property.count_type);
+    const double count = values->Next(*property.count_type);
     if (!(count >= 0.0) || count > static_cast<double>(values->left()) + 1.0) {
       Fail("truncated: a list of ", count, " values");
     }
     if (is_face && count < 3.0) Fail("a face of ", count, " corners, at least 3 were expected");
     std::array<std::uint32_t, 3> triangle = {};
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      const double value = values->Next(property.type);
+      const double value = values->Next(*property.type);
       if (!is_face) continue;
       if (!(value >= 0.0 && value < 4294967295.0)) Fail("vertex index ", value);
       const auto index = static_cast<std::uint32_t>(value);

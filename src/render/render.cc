@@ -9,7 +9,6 @@
 #include <limits>
 #include <mutex>
 
-#include "arena.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
 #include "tiles.h"

@@ -35,7 +35,7 @@ Camera ReadCamera(const JsonValue& json) {
   camera.origin = json.At("origin").Vector();
   camera.target = json.At("target").Vector();
   if (json.Has("up")) camera.up = json.At("up").Direction();
-  camera.field_of_view = json.At("field_of_view").Positive();
+  camera.field_of_view = json.At("field_of_view").Number(Above(0.0));
   if (!(camera.field_of_view < 180.0)) json.At("field_of_view").Refuse("must be less than 180");
   const Vec3 view = camera.target - camera.origin;
   if (!(Length(view) > 0.0)) json.At("target").Refuse("is where the camera is");
@@ -103,12 +103,12 @@ Affine ReadTransform(const JsonValue& json) {
 
 // "width" along x and "height" along y, about the origin.
 TriangleMesh ReadRectangle(const JsonValue& json) {
-  return ParallelogramMesh({}, {json.At("width").Positive() / 2.0, 0.0, 0.0},
-                           {0.0, json.At("height").Positive() / 2.0, 0.0});
+  return ParallelogramMesh({}, {json.At("width").Number(Above(0.0)) / 2.0, 0.0, 0.0},
+                           {0.0, json.At("height").Number(Above(0.0)) / 2.0, 0.0});
 }
 
 SphereShape ReadSphere(const JsonValue& json, const Affine& map) {
-  const double radius = json.At("radius").Positive();
+  const double radius = json.At("radius").Number(Above(0.0));
   const Vec3 center = json.Has("center") ? json.At("center").Vector() : Vec3{};
   const Affine sphere =
       Compose(map, Compose(Affine::Translation(center), Affine::Scaling({radius, radius, radius})));
@@ -148,7 +148,7 @@ class SceneReader {
       value.CheckKeys({"source", "scale_to_albedo"});
       SceneMaterial material = {name, SourceOf(value.At("source"))};
       if (value.Has("scale_to_albedo")) {
-        material.scale_to_albedo = value.At("scale_to_albedo").Positive();
+        material.scale_to_albedo = value.At("scale_to_albedo").Number(Above(0.0));
       }
       scene_.materials.push_back(material);
     }
@@ -234,7 +234,7 @@ class SceneReader {
       json.Refuse("expected one of file, radiance and sky");
     }
     const double rotation = json.Has("rotation") ? json.At("rotation").Number() : 0.0;
-    const double scale = json.Has("scale") ? json.At("scale").NotNegative() : 1.0;
+    const double scale = json.Has("scale") ? json.At("scale").Number(AtLeast(0.0)) : 1.0;
     return json.Check([&] { return EnvironmentMap(EnvironmentImage(json), rotation, scale); });
   }
 
@@ -252,7 +252,7 @@ class SceneReader {
     const JsonValue sun = json.At("sun");
     sun.CheckKeys({"direction", "radius", "radiance"});
     sky.sun_direction = sun.At("direction").Direction();
-    sky.sun_radius = sun.At("radius").Positive();
+    sky.sun_radius = sun.At("radius").Number(Above(0.0));
     sky.sun = sun.At("radiance").Color();
     return sky;
   }

@@ -1,5 +1,7 @@
-#include "solve/adam.h"
-
+// Adam [1] on minibatches of the papers' own loss (Loss::kAbsolute): the published recipe, as the
+// baseline.
+//
+// [1] D. Kingma, J. Ba. Adam: A Method for Stochastic Optimization. ICLR 2015.
 #include <tbb/task_group.h>
 
 #include <algorithm>
@@ -8,11 +10,11 @@
 #include <numeric>
 #include <utility>
 
-#include "kernels/adam_step.h"
-#include "kernels/kernels.h"
+#include "kernels/losses.h"
 #include "pbnbrdf/base/error.h"
 #include "problem/minibatch_gradient.h"
 #include "problem/minibatches.h"
+#include "solve/solver.h"
 
 namespace pbnbrdf {
 namespace {
@@ -94,10 +96,18 @@ bool HasConverged(const std::vector<double>& costs, double tolerance) {
 
 }  // namespace
 
-StageResult MinimizeAdam(const FitProblem& problem, const EncodedSamples& samples,
-                         const AdamOptions& adam, Objective* objective, const StageOptions& options,
+// An iteration is an epoch: every sample once, in random order (the problem's seed). All terms take part
+// from the start; the energy term takes random incident angles at each step, on a grid of energy_theta x
+// energy_phi half vectors.
+//
+// The cost is that of the objective, over some of the training samples. From epoch to epoch it is noisy:
+// converged means that its mean over kWindow epochs differs from that over those before by less than a
+// part of function_tolerance. The weights are those of the epoch with the lowest cost; the published
+// scripts keep the last, whose cost is higher by a tenth or more, at random. Diverged where the cost or a
+// weight isn't finite any more.
+StageResult MinimizeAdam(const StageInput& input, const StageOptions& options,
                          std::vector<double>* weights) {
-  Adam state(problem, samples, adam, *weights);
+  Adam state(input.problem, input.samples, input.options.adam, *weights);
   std::vector<double> last = *weights, costs;  // after each epoch, and at the start
   int best = 0;                                // epoch
   StageResult result;
@@ -109,7 +119,7 @@ StageResult MinimizeAdam(const FitProblem& problem, const EncodedSamples& sample
     return result;
   };
   while (true) {
-    costs.push_back(objective->Cost(last.data()));
+    costs.push_back(input.objective->Cost(last.data()));
     // Weights may overflow before the cost does: tanh makes 1 of an infinite sum.
     if (!std::isfinite(costs.back()) || !AreFinite(last)) {
       return stop(Termination::kDiverged,

@@ -1,5 +1,4 @@
-#include "solve/ceres_solvers.h"
-
+// Ceres' own minimisers.
 #include <ceres/first_order_function.h>
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
@@ -10,7 +9,8 @@
 #include <limits>
 #include <string>
 
-#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/problem/ceres_problem.h"
+#include "solve/solver.h"
 
 namespace pbnbrdf {
 namespace {
@@ -94,9 +94,9 @@ class CostAndGradient final : public ceres::FirstOrderFunction {
   Objective* objective_;
 };
 
-}  // namespace
-
-StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options) {
+// Levenberg-Marquardt (trust region) on a problem whose parameter blocks lie in the caller's weights.
+// Diverged if Ceres finds no usable step.
+StageResult SolveByTrustRegion(ceres::Problem* problem, const StageOptions& options) {
   IterationCallback callback(options);
   auto ceres_options = CommonOptions<ceres::Solver::Options>(options, &callback);
   ceres_options.initial_trust_region_radius = kFirstTrustRegionRadius;
@@ -114,12 +114,31 @@ StageResult MinimizeCeresLm(ceres::Problem* problem, const StageOptions& options
   return result;
 }
 
-StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options,
+}  // namespace
+
+StageResult MinimizeCeresLm(const StageInput& input, const StageOptions& options,
+                            std::vector<double>* weights) {
+  ceres::Problem problem;
+  AddCondensed(input.objective, weights->data(), &problem);
+  return SolveByTrustRegion(&problem, options);
+}
+
+StageResult MinimizeAutodiff(const StageInput& input, const StageOptions& options,
+                             std::vector<double>* weights) {
+  ceres::Problem problem;
+  AddAutodiff(input.problem, input.samples.first(input.objective->num_samples()), input.strata,
+              weights->data(), &problem);
+  return SolveByTrustRegion(&problem, options);
+}
+
+// With line search. Converged too where that finds no lower cost, as at the kinks of Loss::kAbsolute.
+// Diverged if the objective isn't finite at the start.
+StageResult MinimizeCeresLbfgs(const StageInput& input, const StageOptions& options,
                                std::vector<double>* weights) {
   IterationCallback callback(options);
   auto ceres_options = CommonOptions<ceres::GradientProblemSolver::Options>(options, &callback);
   ceres_options.max_lbfgs_rank = kLbfgsRank;
-  const ceres::GradientProblem problem(new CostAndGradient(objective));
+  const ceres::GradientProblem problem(new CostAndGradient(input.objective));
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(ceres_options, problem, weights->data(), &summary);
   if (!summary.IsSolutionUsable() && !summary.iterations.empty()) {
@@ -131,7 +150,7 @@ StageResult MinimizeCeresLbfgs(Objective* objective, const StageOptions& options
   StageResult result = ReadSummary(summary, callback);
   // Where the gradient is 0 at the start, Ceres reports no iteration and no cost.
   if (summary.iterations.empty() && summary.IsSolutionUsable()) {
-    result.cost = objective->Cost(weights->data());
+    result.cost = input.objective->Cost(weights->data());
   }
   return result;
 }

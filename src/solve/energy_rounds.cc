@@ -1,13 +1,36 @@
-#include "solve/energy_rounds.h"
+// How a fit ends with no directional albedo above 1, at any incident direction: infinitely many constraints,
+// of which only those that matter are kept [1].
+//
+// From round to round the albedos are measured by a quadrature much finer than the energy term's.
+// Each stratum's limit then makes up for what the term's own quadrature misses, and strata are added
+// where an albedo is above 1. What is left in the end is removed exactly.
+//
+// [1] R. Hettich, K. Kortanek. Semi-Infinite Programming: Theory, Methods, and Applications. SIAM
+//     Review 35(3), 1993: exchange methods.
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "solve/energy_constraints.h"
-#include "solve/stages.h"
+#include "pbnbrdf/brdf/albedo.h"
+#include "solve/training.h"
 
 namespace pbnbrdf {
 namespace {
+
+constexpr double kPi = std::numbers::pi;
+// The largest directional albedo that a fit with the energy term may have by its own check, so that
+// other checks, at other angles and by other quadratures, find at most 1 + 1e-6.
+constexpr double kMaxAlbedo = 1.0 - 2e-5;
+// Between the rounds, and in the end.
+constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .tolerance = 1e-4, .n_phi = 64};
+constexpr AlbedoGrid kLastGrid = {.angles = 160, .n_phi = 64};
+constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
+constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
+constexpr double kMinStep = 1e-7;        // of a correction
+constexpr int kMaxCorrections = 50, kMaxNewtonSteps = 50;
+constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
 constexpr int kMaxRounds = 24, kRoundIterations = 40;
@@ -16,6 +39,157 @@ constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no fi
 constexpr double kMinCost = 1e-7;           // of the other terms, for the weight of this one
 constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
 constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
+
+const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
+  return *std::max_element(profile.begin(), profile.end(),
+                           [channel](const IncidentAlbedo& a, const IncidentAlbedo& b) {
+                             return a.albedo[channel] < b.albedo[channel];
+                           });
+}
+
+// By how much log(1 + f) has to be lowered so that the channel's albedo, which has been measured
+// there, becomes the bound.
+double LoweringAt(const Brdf& network, const IncidentAlbedo& there, int channel, double bound) {
+  static const auto quadrature = AlbedoQuadrature::OnMerlRows(6, 400);
+  const std::vector<AlbedoNode> nodes = quadrature.Nodes(FromSpherical(there.theta_i, there.phi_i));
+  std::vector<DirectionPair> pairs;
+  for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
+  std::vector<Rgb> values(pairs.size());
+  network.Evaluate(pairs, values);
+  double lowering = 0.0;
+  for (int k = 0; k < kMaxNewtonSteps; ++k) {
+    // The albedo, and minus its derivative, of f' = max(0, (1 + f) exp(-lowering) - 1): convex, so
+    // that Newton's steps don't go too far.
+    double albedo = 0.0, slope = 0.0;
+    const double kept = std::exp(-lowering);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const double lowered = (1.0 + values[n][channel]) * kept;
+      if (!(lowered > 1.0)) continue;
+      albedo += nodes[n].weight * (lowered - 1.0);
+      slope += nodes[n].weight * lowered;
+    }
+    // These nodes aren't those that it was measured with.
+    if (k == 0) bound += albedo - there.albedo[channel];
+    if (!(albedo > bound)) break;
+    lowering += (albedo - bound) / slope;
+  }
+  return lowering;
+}
+
+// For each channel whose albedo is above the bound somewhere, what the direction where it is largest
+// takes.
+Rgb Lowering(const Brdf& network, const std::vector<IncidentAlbedo>& profile, double bound) {
+  Rgb lowering = {};
+  for (int c = 0; c < 3; ++c) {
+    const IncidentAlbedo& largest = LargestIn(profile, c);
+    if (!(largest.albedo[c] > bound)) continue;
+    lowering[c] = LoweringAt(network, largest, c, bound);
+  }
+  return lowering;
+}
+
+class EnergyConstraints {
+ public:
+  explicit EnergyConstraints(const FitProblem& problem);
+
+  // Measures the network, in single precision. Returns its largest directional albedo.
+  double Measure(const std::vector<double>& weights);
+
+  // Adds strata where the albedos that were measured last are too large.
+  void Exchange();
+
+  const std::vector<EnergyStratum>& strata() const { return strata_; }
+
+ private:
+  void AddStratum(const IncidentAlbedo& at);
+
+  const FitProblem problem_;
+  NetworkShape shape_;
+  double solid_angle_;
+  std::vector<EnergyStratum> strata_;
+  std::vector<double> measured_;  // weights, to which the profile belongs
+  std::vector<IncidentAlbedo> profile_;
+};
+
+EnergyConstraints::EnergyConstraints(const FitProblem& problem)
+    : problem_(problem), shape_(problem.Shape()), strata_(EqualStrata(problem)) {
+  solid_angle_ = strata_.front().solid_angle;
+}
+
+double EnergyConstraints::Measure(const std::vector<double>& weights) {
+  const std::unique_ptr<Brdf> single = NeuralBrdf(shape_, weights).SinglePrecision();
+  const Brdf& network = *single;
+  if (weights != measured_) {
+    profile_ = AlbedoProfile(network, kRoundGrid);
+    measured_ = weights;
+  }
+  // What the energy term's own quadrature has to be told.
+  const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
+  tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
+    EnergyStratum& stratum = strata_[k];
+    const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
+    const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
+    for (int c = 0; c < 3; ++c) stratum.limit[c] = kMaxAlbedo - (exact[c] - own[c]);
+  });
+  return Largest(LargestAlbedos(profile_));
+}
+
+void EnergyConstraints::Exchange() {
+  for (int c = 0; c < 3; ++c) AddStratum(LargestIn(profile_, c));
+  for (std::size_t k = 0; k < profile_.size(); ++k) {
+    const bool is_addition = profile_[k].solid_angle == 0.0;
+    if (is_addition || k % kStratumSpacing == 0) AddStratum(profile_[k]);
+  }
+}
+
+// Unless there is one already, or no need of one.
+void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
+  if (!(Largest(at.albedo) > kMaxAlbedo)) return;
+  const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
+  for (const EnergyStratum& stratum : strata_) {
+    if (Length(stratum.wi - wi) <= kSameDirection * wi.z) return;
+  }
+  strata_.push_back({wi, solid_angle_, {kMaxAlbedo, kMaxAlbedo, kMaxAlbedo}});
+}
+
+// About what LowerToConserve lowers log(1 + f) by if the largest directional albedo is so much.
+double CorrectionOf(double max_albedo) {
+  return std::log((std::max(max_albedo, kMaxAlbedo) + kPi) / (kMaxAlbedo + kPi));
+}
+
+struct Correction {
+  double lowered;     // log(1 + f), in the channel where it was lowered most
+  double max_albedo;  // the largest directional albedo that is left
+};
+
+// Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by about
+// the least s of each channel with which no directional albedo is above kMaxAlbedo. A reciprocal
+// network stays so.
+Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
+  const int last = shape.num_layers() - 1, in = shape.in(last);
+  Rgb sum = {};
+  double largest = 0.0;
+  // In single precision until nothing is left to do; then in double.
+  for (bool exactly : {false, true}) {
+    const double bound = exactly ? kMaxAlbedo : kMaxAlbedo - kRounding;
+    for (int k = 0; k < kMaxCorrections; ++k) {
+      const NeuralBrdf exact(shape, *weights);
+      const std::unique_ptr<Brdf> single = exact.SinglePrecision();
+      const Brdf& network = exactly ? static_cast<const Brdf&>(exact) : *single;
+      const std::vector<IncidentAlbedo> profile = AlbedoProfile(network, kLastGrid);
+      largest = Largest(LargestAlbedos(profile));
+      if (!(largest > bound)) break;
+      const Rgb lowering = Lowering(network, profile, bound);
+      for (int c = 0; c < shape.num_outputs(); ++c) {
+        if (lowering[c] == 0.0) continue;
+        const double step = lowering[c] + std::ldexp(kMinStep, k);  // more, if it goes on and on
+        sum[c] += step;
+        (*weights)[shape.offset(last) + c * (in + 1) + in] -= step;
+      }
+    }
+  }
+  return {Largest(sum), largest};
+}
 
 // With which the energy term costs as much as all else; 0 where its cost isn't finite.
 double BalancedWeight(const std::vector<EnergyStratum>& strata, Training* training) {

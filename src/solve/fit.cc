@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "pbnbrdf/base/error.h"
-#include "solve/energy_rounds.h"
 #include "solve/fit_fields.h"
-#include "solve/stages.h"
+#include "solve/solver.h"
+#include "solve/training.h"
 
 namespace pbnbrdf {
 namespace {

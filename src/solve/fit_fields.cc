@@ -1,11 +1,15 @@
 #include "solve/fit_fields.h"
 
 #include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/solve/problem_file.h"
 #include "problem/problem_fields.h"
 #include "solve/solver.h"
 
 namespace pbnbrdf {
 namespace {
+
+constexpr std::uintmax_t kMaxFileSize = 1 << 20;  // bytes; a problem has a few dozen lines
 
 std::string SolversHelp() {
   std::string text;
@@ -60,6 +64,27 @@ Fields FitFields(FitProblem* problem, FitOptions* options) {
   fields.Add(SamplingFields(&problem->sampling));
   fields.Add(OptionFields(options));
   return fields;
+}
+
+FitSetup ReadProblem(const std::string& path) {
+  FitSetup setup;
+  const std::string lines = ReadFile(path, kMaxFileSize);
+  try {
+    FitFields(&setup.problem, &setup.options).ReadLines(lines);
+    ValidateFit(setup.problem, setup.options);
+  } catch (const Error& error) {
+    Fail(path, ": ", error.what());
+  }
+  return setup;
+}
+
+std::string ProblemText(const FitSetup& setup) {
+  FitSetup copy = setup;
+  return FitFields(&copy.problem, &copy.options).Lines();
+}
+
+void WriteProblem(const std::string& path, const FitSetup& setup) {
+  WriteFile(path, ProblemText(setup));
 }
 
 }  // namespace pbnbrdf

@@ -1,18 +1,26 @@
-#include "solve/lm.h"
-
+// Levenberg-Marquardt on the normal equations of an Objective.
+//
+// The steps are those of Ceres' trust region [1]. The linear algebra is this project's own: Debian's
+// libceres is compiled for any x86-64, and its factorisation would take most of the time.
+//
+// [1] S. Agarwal, K. Mierle and others. Ceres Solver, version 2.1. Its user guide names the sources,
+//     foremost K. Madsen, H. Nielsen, O. Tingleff. Methods for Non-Linear Least Squares Problems. 2004
+//     (the radius), and A. Conn, N. Gould, P. Toint. Trust-Region Methods. SIAM 2000, algorithm 10.1.2
+//     (steps that may raise the cost).
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "kernels/cholesky.h"
 #include "pbnbrdf/base/error.h"
+#include "solve/solver.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kMinRadius = 1e-32, kMaxRadius = 1e16;  // Ceres' defaults
-constexpr double kMinDecrease =
-    1e-3;                           // of the predicted one, for a step to be taken; Ceres' default
+// Of the predicted one, for a step to be taken; Ceres' default.
+constexpr double kMinDecrease = 1e-3;
 constexpr int kMaxRisingSteps = 5;  // Ceres' default (max_consecutive_nonmonotonic_steps)
 constexpr double kMaxRise = 4.0;    // of the cost over the least one so far
 // The damping is relative to the diagonal of J'J in weights scaled by 1 / (1 + |J_i|), and there at
@@ -228,9 +236,10 @@ class LevenbergMarquardt {
 
 }  // namespace
 
-StageResult MinimizeLm(Objective* objective, const StageOptions& options,
+// Diverged if the objective isn't finite at the start; converged at once where its gradient is 0.
+StageResult MinimizeLm(const StageInput& input, const StageOptions& options,
                        std::vector<double>* weights) {
-  return LevenbergMarquardt(objective, options, weights).Run();
+  return LevenbergMarquardt(input.objective, options, weights).Run();
 }
 
 }  // namespace pbnbrdf

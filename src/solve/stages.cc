@@ -1,9 +1,10 @@
-#include "solve/stages.h"
-
+// How a fit proceeds: short runs from several starts, then stages on more and more samples.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "pbnbrdf/base/error.h"
+#include "solve/training.h"
 
 namespace pbnbrdf {
 namespace {
@@ -20,6 +21,24 @@ constexpr double kOverfit = 1.1;
 // the materials of experiments/solver_comparison.
 constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
 constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
+
+// Whether a number that is watched has all but ceased to fall.
+class Slowdown {
+ public:
+  // Slow: its least value has fallen by less than a part of `fall` over `iterations`.
+  Slowdown(std::size_t iterations, double fall) : iterations_(iterations), fall_(fall) {}
+
+  bool Observe(double value) {
+    least_.push_back(least_.empty() ? value : std::min(value, least_.back()));
+    if (least_.size() <= iterations_) return false;
+    return least_.back() > (1.0 - fall_) * least_[least_.size() - 1 - iterations_];
+  }
+
+ private:
+  std::size_t iterations_;
+  double fall_;
+  std::vector<double> least_;  // so far, at each iteration
+};
 
 // What a stage ended for; kNone: for the solver's own reasons.
 enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };

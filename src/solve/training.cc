@@ -64,7 +64,7 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
                               validation_samples_.size());
   summary_.final_cost = std::numeric_limits<double>::infinity();
   if (!options.on_iteration) return;
-  stopwatch_.Exclude([&] {
+  timer_.Exclude([&] {
     heldout_samples_.Add(HeldOutSamples(material, kHeldOutSamples, kHeldOutSeed));
     heldout_ = MakeObjective(WithoutEnergy(problem_), options.precision, heldout_samples_,
                              heldout_samples_.size());
@@ -90,7 +90,7 @@ void Training::StartAnew(int index) {
 
 bool Training::MayContinue() const {
   return summary_.termination != Termination::kInterrupted &&
-         stopwatch_.Seconds() < options_.schedule.max_seconds;
+         timer_.Seconds() < options_.schedule.max_seconds;
 }
 
 void Training::TakeMoreSamples() {
@@ -121,7 +121,7 @@ double Training::Minimize(int max_iterations,
   stage.max_iterations = max_iterations;
   stage.curvature_samples = curvature_samples_;
   stage.function_tolerance = options_.schedule.function_tolerance;
-  stage.seconds_left = [this] { return options_.schedule.max_seconds - stopwatch_.Seconds(); };
+  stage.seconds_left = [this] { return options_.schedule.max_seconds - timer_.Seconds(); };
   stage.on_iteration = std::move(on_iteration);
   const StageResult result =
       solver_.minimize({problem_, options_, samples_, strata_, objective_.get()}, stage, &weights_);
@@ -139,15 +139,15 @@ bool Training::Report(int iteration, double cost) {
   FitProgress progress;
   progress.iteration = summary_.iterations + iteration;
   progress.cost = cost;
-  progress.seconds = stopwatch_.Seconds();
-  return stopwatch_.Exclude([&] {
+  progress.seconds = timer_.Seconds();
+  return timer_.Exclude([&] {
     progress.heldout_error = heldout_->MeanAbsLogError(weights_.data());
     return options_.on_iteration(progress);
   });
 }
 
 void Training::Finish() {
-  summary_.seconds = stopwatch_.Seconds();
+  summary_.seconds = timer_.Seconds();
   summary_.samples = samples_.size();
   summary_.energy.work = objective_->energy_work();
   summary_.precision_limited = options_.precision == Precision::kSingle && !AgreesInDouble();

@@ -1,13 +1,12 @@
-// training.h: a fit in progress: samples, objectives, weights, clock and summary.
+// training.h: a fit in progress: samples, objectives, weights, clock and summary; and its stages.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "base/timer.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "problem/encoded_samples.h"
-#include "solve/pace.h"
 #include "solve/solver.h"
 
 namespace pbnbrdf {
@@ -59,7 +58,7 @@ class Training {
  private:
   bool AgreesInDouble();
 
-  Stopwatch stopwatch_;
+  Timer timer_;
   const FitOptions& options_;
   const Solver& solver_;
   FitProblem problem_;
@@ -73,5 +72,15 @@ class Training {
   std::vector<double> weights_;
   FitSummary summary_;
 };
+
+// Leaves the best of several short runs, of ScheduleOptions::starts. The first start is the training's.
+void RunStarts(Training* training);
+
+// Minimises from where the last stage ended, on the samples so far and then on more and more.
+void RunStages(Training* training, int max_iterations);
+
+// Brings all directional albedos to at most 1: by stages with the energy term (eq. 5) and, where that isn't
+// enough, by lowering the network as a whole. problem: with the energy term's weight to begin with.
+void ConserveEnergy(const FitProblem& problem, Training* training);
 
 }  // namespace pbnbrdf

@@ -109,22 +109,22 @@ TEST(Fields, AutoStandsForNoValue) {
 }
 
 TEST(Fields, TextsThatAreNoValuesAreNamed) {
-  EXPECT_EQ(ReadError("--radius=x"), "radius: 'x' is not a finite number");
-  EXPECT_EQ(ReadError("--radius=nan"), "radius: 'nan' is not a finite number");
-  EXPECT_EQ(ReadError("--count=1.5"), "count: '1.5' is not a whole number");
-  EXPECT_EQ(ReadError("--seed=-1"), "seed: '-1' is not a whole number");
-  EXPECT_EQ(ReadError("--sizes=1,,2"), "sizes: '' is not a whole number");
-  EXPECT_EQ(ReadError("--smooth=yes"), "smooth=yes is not true | false");
-  EXPECT_EQ(ReadError("--metal=tin"), "metal=tin is not one of gold | iron");
-  EXPECT_EQ(ReadError("--coat=tin"), "coat=tin is not one of auto | gold | iron");
+  EXPECT_EQ(ReadError("--radius=x"), "--radius: 'x' is not a finite number");
+  EXPECT_EQ(ReadError("--radius=nan"), "--radius: 'nan' is not a finite number");
+  EXPECT_EQ(ReadError("--count=1.5"), "--count: '1.5' is not a whole number");
+  EXPECT_EQ(ReadError("--seed=-1"), "--seed: '-1' is not a whole number");
+  EXPECT_EQ(ReadError("--sizes=1,,2"), "--sizes: '' is not a whole number");
+  EXPECT_EQ(ReadError("--smooth=yes"), "--smooth=yes is not true | false");
+  EXPECT_EQ(ReadError("--metal=tin"), "--metal=tin is not one of gold | iron");
+  EXPECT_EQ(ReadError("--coat=tin"), "--coat=tin is not one of auto | gold | iron");
 }
 
 TEST(Fields, LinesThatAreNoFlagsAreNamed) {
   EXPECT_EQ(ReadError("radius=1"), "'radius=1' is not a flag; flags begin with --");
   EXPECT_EQ(ReadError("--radius"), "--radius needs a value");
-  EXPECT_EQ(ReadError("--radios=1"), "--radios is unknown; did you mean --radius?");
-  EXPECT_EQ(ReadError("--smoth"), "--smoth is unknown; did you mean --smooth?");
-  EXPECT_EQ(ReadError("--nometal"), "--nometal is unknown; did you mean --metal?");
+  EXPECT_EQ(ReadError("--radios=1"), "--radios is not a flag; did you mean --radius?");
+  EXPECT_EQ(ReadError("--smoth"), "--smoth is not a flag; did you mean --smooth?");
+  EXPECT_EQ(ReadError("--nometal"), "--nometal is not a flag; did you mean --metal?");
 }
 
 TEST(Fields, ValuesOutOfRangeAreNamed) {

@@ -93,9 +93,8 @@ TEST_F(CliSources, ModelMistakesAreNamed) {
   ExpectError(fit + " --model=gxg", 2, "--model 'gxg' is unknown; did you mean ggx?");
   ExpectError(fit + " --model=ggx --lobes=3", 2, "--lobes = 3; must be 1 to 2");
   ExpectError(fit + " --model=ggx --samples=0", 2, "--samples = 0; must be 1 to");
-  ExpectError(fit + " --model=ggx --hidden=5", 2, "--hidden is not a flag of 'fit-model'");
-  ExpectError(fit + " --model=ggx --trace=" + Path("t.csv"), 2,
-              "--trace is not a flag of 'fit-model'");
+  ExpectError(fit + " --model=ggx --hidden=5", 2, "--hidden is not a flag");
+  ExpectError(fit + " --model=ggx --trace=" + Path("t.csv"), 2, "--trace is not a flag");
   ExpectError("fit-model --model=ggx --material=builtin:blue-plastic --out=" + Path("out"), 2,
               "out: a model is written to a FILE.json");
   EXPECT_FALSE(std::filesystem::exists(Path("out.json")));

@@ -117,10 +117,10 @@ TEST_F(Cli, WrongUsageExitsWith2) {
       "compare | fit-model; see pbnbrdf --help");
   ExpectError("fit", 2, "--material is required");
   ExpectError("fit --material=builtin:satin-gold", 2, "--out is required");
-  ExpectError("info builtin: --all", 2, "--all is not a flag of 'info'");
+  ExpectError("info builtin: --all", 2, "--all is not a flag");
   const std::string fit = "fit --material=builtin:satin-gold --out=" + Path("out");
-  ExpectError(fit + " --sample=3", 2, "--sample is not a flag of 'fit'; did you mean --samples?");
-  ExpectError(fit + " --json", 2, "--json is not a flag of 'fit'");
+  ExpectError(fit + " --sample=3", 2, "--sample is not a flag; did you mean --samples?");
+  ExpectError(fit + " --json", 2, "--json is not a flag");
   ExpectError(fit + " --samples=many", 2, "--samples: 'many' is not a whole number");
   ExpectError(fit + " --samples=0", 2, "--samples = 0; must be 1 to");
   ExpectError(fit + " --samples", 2, "--samples needs a value");
@@ -424,7 +424,7 @@ TEST_F(Cli, ShippedProblemsFit) {
 TEST_F(Cli, FlagfileErrorsNameTheFile) {
   WriteBytes(Path("x.flags"), "# a comment\n--loss=l2\n--los=l2\n");
   ExpectError("fit --flagfile=" + Path("x.flags") + " --out=" + Path("out"), 2,
-              "x.flags: --los is not a flag of 'fit'; did you mean --loss?");
+              "x.flags: --los is not a flag; did you mean --loss?");
   WriteBytes(Path("y.flags"), "--flagfile=" + Path("x.flags") + "\n");
   ExpectError("fit --flagfile=" + Path("y.flags"), 2, "y.flags: " + Path("x.flags") + ": --los");
   WriteBytes(Path("z.flags"), "--flagfile=" + Path("z.flags") + "\n");

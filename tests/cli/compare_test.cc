@@ -3,6 +3,7 @@
 #include "image/images.h"
 #include "metrics/lpips_weights.h"
 #include "network/safetensors.h"
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
 #include "pbnbrdf/metrics/image_metrics.h"
@@ -125,7 +126,7 @@ class CompareLpips : public Compare {
 };
 
 TEST_F(CompareLpips, IsThatOfTheShownImages) {
-  WriteSafetensors(Path("alex.safetensors"), File(weights_));
+  WriteFile(Path("alex.safetensors"), SafetensorsBytes(File(weights_)));
   const std::string command = large_ + " --lpips=" + Path("alex.safetensors");
   const Result result = Run(command + " --json"), without = Run(large_ + " --json");
   ASSERT_EQ(result.status, 0) << result.err;
@@ -143,7 +144,7 @@ TEST_F(CompareLpips, IsThatOfTheShownImages) {
 TEST_F(CompareLpips, Misuse) {
   ExpectError(large_ + " --lpips", 2, "--lpips needs a value");
   ExpectError(large_ + " --lpips=", 2, "--lpips= needs a file");
-  WriteSafetensors(Path("alex.safetensors"), File(weights_));
+  WriteFile(Path("alex.safetensors"), SafetensorsBytes(File(weights_)));
   ExpectError(Command("reference.exr", "test.exr") + " --lpips=" + Path("alex.safetensors"), 1,
               "reference.exr: 30 x 20 pixels; LPIPS needs at least 31 x 31");
 }
@@ -163,28 +164,28 @@ TEST_F(CompareLpips, UnusableFiles) {
     if (name.starts_with("lins.") || name.starts_with("scaling_layer")) continue;
     file = File(weights_);
     file.tensors.erase(name);
-    WriteSafetensors(Path("less.safetensors"), file);
+    WriteFile(Path("less.safetensors"), SafetensorsBytes(file));
     ExpectLpipsError("less.safetensors", StrCat("no tensor ", name, " (", ShapeText(tensor.shape)));
   }
 
   file = File(weights_);
   file.tensors["net.slice3.6.weight"].shape = {192, 384, 3, 3};
-  WriteSafetensors(Path("turned.safetensors"), file);
+  WriteFile(Path("turned.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError(
       "turned.safetensors",
       "tensor net.slice3.6.weight: shape 192 x 384 x 3 x 3, expected 384 x 192 x 3 x 3");
   file = File(weights_);
   file.tensors["lin4.model.1.weight"].shape = {256};
-  WriteSafetensors(Path("flat.safetensors"), file);
+  WriteFile(Path("flat.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError("flat.safetensors",
                    "tensor lin4.model.1.weight: shape 256, expected 1 x 256 x 1 x 1");
   file = File(weights_);
   file.tensors["net.slice1.0.bias"].values[3] = std::nan("");
-  WriteSafetensors(Path("nan.safetensors"), file);
+  WriteFile(Path("nan.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError("nan.safetensors", "tensor net.slice1.0.bias: holds a value that is not finite");
   file = File(weights_);
   for (double& weight : file.tensors["net.slice2.3.weight"].values) weight *= 1e300;
-  WriteSafetensors(Path("huge.safetensors"), file);
+  WriteFile(Path("huge.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError("huge.safetensors", "LPIPS isn't finite: ");
 }
 

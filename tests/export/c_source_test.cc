@@ -1,5 +1,5 @@
 // The exported C code, compiled and run.
-#include "export/c_source.h"
+#include "export/formats.h"
 
 #include <cstring>
 

@@ -1,7 +1,6 @@
 #include "export/code.h"
 
 #include "export/networks.h"
-#include "export/source_text.h"
 
 namespace pbnbrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "export/csv_table.h"
+#include "export/formats.h"
 
 #include <set>
 

@@ -1,5 +1,5 @@
 // The exported shader code, run by OpenGL ES 3 without a window.
-#include "export/glsl_source.h"
+#include "export/formats.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

@@ -1,5 +1,5 @@
 // What doesn't need ONNX's own packages; tests/interop/onnx_test.py runs the models.
-#include "export/onnx_model.h"
+#include "export/formats.h"
 
 #include "export/networks.h"
 #include "export/protobuf.h"

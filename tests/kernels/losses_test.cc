@@ -113,5 +113,23 @@ TEST(Losses, AbsoluteGradientsAreAdded) {
   for (int k = 0; k < 3 * kBatch; ++k) EXPECT_NEAR(once[k], twice[k], 1e-6);
 }
 
+TEST(AdamStep, IsThatOfThePaper) {
+  constexpr std::size_t kCount = 3 * kPad;
+  constexpr double kTolerance = 256.0 * std::numeric_limits<float>::epsilon();
+  const auto gradient = Random<float>(kCount, 9);
+  auto mean = Random<float>(kCount, 10), square = Random<float>(kCount, 11);
+  auto x = Random<float>(kCount, 12);
+  for (float& s : square) s = std::abs(s);
+  const auto mean0 = mean, square0 = square, x0 = x;
+  AdamStep(kCount, gradient.data(), 0.1f, 0.9f, 0.99f, 1e-8f, mean.data(), square.data(), x.data());
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double m = 0.9 * mean0[i] + 0.1 * gradient[i];
+    const double v = 0.99 * square0[i] + 0.01 * gradient[i] * gradient[i];
+    EXPECT_NEAR(mean[i], m, kTolerance);
+    EXPECT_NEAR(square[i], v, kTolerance);
+    EXPECT_NEAR(x[i], x0[i] - 0.1 * m / (std::sqrt(v) + 1e-8), kTolerance);
+  }
+}
+
 }  // namespace
 }  // namespace pbnbrdf::kernels

@@ -34,7 +34,7 @@ std::vector<double> SomeParameters(const AnalyticModel& model, int lobes, unsign
 template <typename Formula>
 double WorstDerivative(double flaw) {
   const AnalyticModel& model = FindAnalyticModel(Formula::kName);
-  const int lobes = model.lobe.empty() ? 0 : kMostLobes;
+  const int lobes = model.lobe.empty() ? 0 : kMaxLobes;
   std::vector<double> scalars = SomeParameters(model, lobes, /*seed=*/31);
   std::array<Jet, kMostScalars> jets;
   for (std::size_t i = 0; i < scalars.size(); ++i) jets[i] = Jet(scalars[i], static_cast<int>(i));

@@ -3,6 +3,7 @@
 #include "brdf/direction_pairs.h"
 #include "network/random_network.h"
 #include "network/safetensors.h"
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/importance_sampler.h"
 #include "pbnbrdf/network/mlp.h"
@@ -103,7 +104,7 @@ TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {
   const auto read = [&](auto change) {
     SafetensorsFile file = good;
     change(file);
-    WriteSafetensors(path, file);
+    WriteFile(path, SafetensorsBytes(file));
     return ErrorOf([&] { NeuralBrdf::Read(path); });
   };
   EXPECT_EQ(read([](auto&) {}), "");

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "pbnbrdf/base/files.h"
 #include "test_util.h"
 
 namespace pbnbrdf {
@@ -25,7 +26,7 @@ TEST(Safetensors, RoundTrips) {
   file.tensors["a"] = {{2, 3}, {1.0, -2.0, 0.1, 1e300, 5e-324, 6.0}};
   file.tensors["b"] = {{1}, {7.0}};
   file.metadata["key"] = "a \"quoted\"\nvalue";
-  WriteSafetensors(folder / "x", file);
+  WriteFile(folder / "x", SafetensorsBytes(file));
   const SafetensorsFile read = ReadSafetensors(folder / "x");
   EXPECT_EQ(read.metadata, file.metadata);
   ASSERT_EQ(read.tensors.size(), 2u);

@@ -68,15 +68,16 @@ TEST(ProblemFile, TermsAreNamesWithOrWithoutWeights) {
 }
 
 TEST(ProblemFile, MistakesAreNamedWithTheFile) {
-  EXPECT_THAT(ReadError("--los=l2"), HasSubstr("x.flags: --los is unknown; did you mean --loss?"));
+  EXPECT_THAT(ReadError("--los=l2"),
+              HasSubstr("x.flags: --los is not a flag; did you mean --loss?"));
   EXPECT_THAT(ReadError("--terms=log,colour"),
-              HasSubstr("x.flags: terms=colour is not one of log | chromaticity | energy"));
+              HasSubstr("x.flags: --terms=colour is not one of log | chromaticity | energy"));
   EXPECT_THAT(ReadError("--terms=log:1:2"), HasSubstr("terms: 'log:1:2' must be NAME or NAME:WEI"));
   EXPECT_THAT(ReadError("--terms=log:x"), HasSubstr("terms: 'x' is not a finite number"));
   EXPECT_THAT(ReadError("--terms=log,log"), HasSubstr("terms: log is there twice"));
   EXPECT_THAT(ReadError("--terms=energy"), HasSubstr("terms: log or chromaticity must be among"));
   EXPECT_THAT(ReadError("--growth=1"), HasSubstr("growth = 1; must be finite and > 1"));
-  EXPECT_THAT(ReadError("--scene_floor=0.5"), HasSubstr("--scene_floor is unknown"));
+  EXPECT_THAT(ReadError("--scene_floor=0.5"), HasSubstr("--scene_floor is not a flag"));
 }
 
 }  // namespace

@@ -32,6 +32,17 @@ Enum ParseName(const NameTable<Enum, N>& table, std::string_view field, std::str
   Fail(field, "=", name, " is not one of ", JoinNames(table));
 }
 
+// The one of a range's elements whose `name` this is. Throws Error: "<before><name> is not one of a | b | c".
+template <typename Range>
+const auto& FindNamed(const Range& range, std::string_view before, std::string_view name) {
+  std::string names;
+  for (const auto& element : range) {
+    if (element.name == name) return element;
+    names += (names.empty() ? "" : " | ") + std::string(element.name);
+  }
+  Fail(before, name, " is not one of ", names);
+}
+
 // The value must be in the table.
 template <typename Enum, std::size_t N>
 std::string_view NameOf(const NameTable<Enum, N>& table, Enum value) {

@@ -14,11 +14,11 @@ enum class ExportFormat {
   kNpy,      // six NumPy files, as NBRDF's Mitsuba plugin reads them (nbrdf_files.h)
   kH5,       // a Keras file, as NBRDF's are (nbrdf_files.h)
   kMerl,     // a table in the format of the MERL database (merl.h)
-  kCsv,      // a table of angles and values (csv_table.h)
-  kC,        // a C99 header (c_source.h)
-  kGlsl,     // a function for GLSL ES 3.00 (glsl_source.h)
-  kMitsuba,  // a BSDF for Mitsuba 3 (mitsuba_plugin.h)
-  kOnnx,     // an ONNX model (onnx_model.h)
+  kCsv,      // a table of angles and values
+  kC,        // a C99 header
+  kGlsl,     // a function for GLSL ES 3.00
+  kMitsuba,  // a BSDF for Mitsuba 3
+  kOnnx,     // an ONNX model
 };
 
 inline constexpr NameTable<ExportFormat, 8> kExportFormats = {{{"npy", ExportFormat::kNpy},

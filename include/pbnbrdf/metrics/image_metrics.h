@@ -40,10 +40,9 @@ inline constexpr int kSsimWindow = 11;
 // 1, that for equal images.
 double Ssim(const Image& reference, const Image& test);
 
-struct ImageErrors {
+struct ImageErrors : LinearErrors {
   double exposure = 0.0;  // DisplayExposure
-  double mae = 0.0, mse = 0.0, rmse = 0.0;
-  double psnr = 0.0;  // dB; infinite where the display images are equal
+  double psnr = 0.0;      // dB; infinite where the display images are equal
   double ssim = 0.0;
   double flip = 0.0, hdr_flip = 0.0;  // means of the maps of flip.h
   double delta_e_2000 = 0.0;          // mean CIE Delta E 2000 (color.h) of the shown colours

@@ -44,7 +44,7 @@ using LpipsWeights = std::array<LpipsLayer, kLpipsLayers.size()>;
 
 // The smallest side of images that LPIPS is defined for: 31 pixels make 7 positions of the first
 // layer, 3 of the second and 1 of the others.
-inline constexpr int kLpipsSmallestSide = 31;
+inline constexpr int kMinLpipsSide = 31;
 
 // Throws Error, which begins with the name, if a side of the image is shorter than that.
 void CheckLargeEnoughForLpips(const Image& image, const std::string& name);

@@ -23,7 +23,7 @@
 
 namespace pbnbrdf {
 
-inline constexpr int kMostLobes = 2;
+inline constexpr int kMaxLobes = 2;
 
 struct AnalyticModel {
   std::string_view name, paper;
@@ -51,7 +51,7 @@ class AnalyticBrdf final : public PointwiseBrdf {
   using Metadata = std::map<std::string, std::string>;
 
   // parameters: the scalars of the base and of each lobe, one after the other. lobes: 1 to
-  // kMostLobes, 0 if the model has none. Throws Error if their number is another or one isn't
+  // kMaxLobes, 0 if the model has none. Throws Error if their number is another or one isn't
   // within its bounds.
   AnalyticBrdf(const AnalyticModel& model, int lobes, std::vector<double> parameters);
 

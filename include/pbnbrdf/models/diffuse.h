@@ -1,11 +1,9 @@
 // diffuse.h: diffuse reflectance: Lambert, and the rough surface of Oren and Nayar [1].
 //
 // [1] M. Oren, S. Nayar. Generalization of Lambert's Reflectance Model. SIGGRAPH 1994.
-// [2] J. H. Lambert. Photometria. 1760.
 #pragma once
 
 #include "pbnbrdf/brdf/brdf.h"
-#include "pbnbrdf/brdf/reflection_geometry.h"
 #include "pbnbrdf/models/model_parameter.h"
 
 namespace pbnbrdf {
@@ -22,34 +20,21 @@ T OrenNayarFactor(const ReflectionGeometry& g, const T& sigma) {
   return a + b * (sin_sin_cos_phi / std::max(g.wi.z, g.wo.z));
 }
 
-// f = rho_d / pi [2].
-struct LambertFormula {
+struct LambertFormula : LambertBase, NoLobe {
   static constexpr std::string_view kName = "lambert", kPaper = "Lambert 1760";
-  static constexpr std::array<ModelParameter, 1> kBase = {kDiffuseAlbedo};
-  static constexpr std::array<ModelParameter, 0> kLobe = {};
-
-  template <typename T>
-  static void AddBase(const ReflectionGeometry&, const T* base, T* f) {
-    AddLambert(base, f);
-  }
-  template <typename T>
-  static void AddLobe(const ReflectionGeometry&, const T*, T*) {}
 };
 
-struct OrenNayarFormula {
+struct OrenNayarFormula : NoLobe {
   static constexpr std::string_view kName = "oren_nayar", kPaper = "Oren and Nayar 1994";
   static constexpr std::array<ModelParameter, 2> kBase = {
       {kDiffuseAlbedo,
        {"sigma", 1, 0.3, 0.0, 1.5, "standard deviation of the facets' slope angle, radians"}}};
-  static constexpr std::array<ModelParameter, 0> kLobe = {};
 
   template <typename T>
   static void AddBase(const ReflectionGeometry& g, const T* base, T* f) {
     const T factor = OrenNayarFactor(g, base[3]) * std::numbers::inv_pi;
     for (int c = 0; c < 3; ++c) f[c] += base[c] * factor;
   }
-  template <typename T>
-  static void AddLobe(const ReflectionGeometry&, const T*, T*) {}
 };
 
 // f = rho / pi; rho in [0, 1].

@@ -25,7 +25,7 @@
 namespace pbnbrdf {
 
 struct AnalyticFitOptions {
-  int lobes = 1;                       // 1 to kMostLobes; models without lobes don't ask
+  int lobes = 1;                       // 1 to kMaxLobes; models without lobes don't ask
   double loss_scale = 0.001;           // > 0, |r| at which rho turns from square to linear
   std::uint64_t first_samples = 1000;  // >= 1, that the starts see: the first of all
   int starts = 12;                     // >= 1: from narrow lobes to wide ones; the best ones go on

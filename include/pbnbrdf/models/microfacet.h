@@ -38,16 +38,11 @@ void AddFresnelLobe(const ReflectionGeometry& g, const T* rho_s, const T* f0, co
   for (int c = 0; c < 3; ++c) f[c] += rho_s[c] * SchlickFresnel(f0[c], g.cos_d) * value;
 }
 
-struct GgxFormula {
+struct GgxFormula : LambertBase {
   static constexpr std::string_view kName = "ggx", kPaper = "Walter et al. 2007, Smith's masking";
-  static constexpr std::array<ModelParameter, 1> kBase = {kDiffuseAlbedo};
   static constexpr std::array<ModelParameter, 4> kLobe = {kSpecularScale, kNormalReflectance,
                                                           kWidthX, kWidthY};
 
-  template <typename T>
-  static void AddBase(const ReflectionGeometry&, const T* base, T* f) {
-    AddLambert(base, f);
-  }
   template <typename T>
   static void AddLobe(const ReflectionGeometry& g, const T* lobe, T* f) {
     const T &alpha_x = lobe[6], &alpha_y = lobe[7];
@@ -57,17 +52,12 @@ struct GgxFormula {
   }
 };
 
-struct CookTorranceFormula {
+struct CookTorranceFormula : LambertBase {
   static constexpr std::string_view kName = "cook_torrance",
                                     kPaper = "Cook and Torrance 1982, Beckmann facets";
-  static constexpr std::array<ModelParameter, 1> kBase = {kDiffuseAlbedo};
   static constexpr std::array<ModelParameter, 4> kLobe = {kSpecularScale, kNormalReflectance,
                                                           kWidthX, kWidthY};
 
-  template <typename T>
-  static void AddBase(const ReflectionGeometry&, const T* base, T* f) {
-    AddLambert(base, f);
-  }
   template <typename T>
   static void AddLobe(const ReflectionGeometry& g, const T* lobe, T* f) {
     const T value =

@@ -18,7 +18,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string_view>
+
+#include "pbnbrdf/brdf/reflection_geometry.h"
 
 namespace pbnbrdf {
 
@@ -51,8 +54,7 @@ struct ModelParameter {
 };
 
 // The number of scalars in a table.
-template <std::size_t N>
-constexpr int SizeOf(const std::array<ModelParameter, N>& table) {
+constexpr int SizeOf(std::span<const ModelParameter> table) {
   int size = 0;
   for (const ModelParameter& parameter : table) size += parameter.size;
   return size;
@@ -65,43 +67,46 @@ inline constexpr ModelParameter kSpecularScale = {
     "rho_s", 3, 1.0, 0.0, 1e4, "factor of the lobe", FitRole::kScale};
 inline constexpr ModelParameter kNormalReflectance = {
     "f0", 3, 1.0, 0.0, 1.0, "Schlick's reflectance at normal incidence"};
-inline constexpr ModelParameter kWidthX = {.name = "alpha_x",
-                                           .size = 1,
-                                           .initial = 0.2,
-                                           .lower = 1e-4,
-                                           .upper = 4.0,
-                                           .meaning = "width of the lobe along x, a slope",
-                                           .role = FitRole::kWidth,
-                                           .narrow = 0.004,
-                                           .wide = 0.6,
-                                           .logarithmic = true};
-inline constexpr ModelParameter kWidthY = {.name = "alpha_y",
-                                           .size = 1,
-                                           .initial = 0.2,
-                                           .lower = 1e-4,
-                                           .upper = 4.0,
-                                           .meaning = "width of the lobe along y, a slope",
-                                           .role = FitRole::kWidth,
-                                           .narrow = 0.004,
-                                           .wide = 0.6,
-                                           .logarithmic = true,
-                                           .when_isotropic = WhenIsotropic::kAsPrevious,
-                                           .pair_name = "alpha"};
-inline constexpr ModelParameter kExponent = {.name = "n",
-                                             .size = 1,
-                                             .initial = 100.0,
-                                             .lower = 0.1,
-                                             .upper = 1e7,
-                                             .meaning = "exponent of the cosine",
-                                             .role = FitRole::kWidth,
-                                             .narrow = 1e5,
-                                             .wide = 4.0,
-                                             .logarithmic = true};
+inline constexpr ModelParameter kWidthX = {
+    "alpha_x",       1,     0.2, 1e-4, 4.0, "width of the lobe along x, a slope",
+    FitRole::kWidth, 0.004, 0.6, true};
+inline constexpr ModelParameter kWidthY = {"alpha_y",
+                                           1,
+                                           0.2,
+                                           1e-4,
+                                           4.0,
+                                           "width of the lobe along y, a slope",
+                                           FitRole::kWidth,
+                                           0.004,
+                                           0.6,
+                                           true,
+                                           WhenIsotropic::kAsPrevious,
+                                           "alpha"};
+inline constexpr ModelParameter kExponent = {
+    "n", 1, 100.0, 0.1, 1e7, "exponent of the cosine", FitRole::kWidth, 1e5, 4.0, true};
 
 // f += value / pi for R, G, B.
 template <typename T>
 void AddLambert(const T* rho_d, T* f) {
   for (int c = 0; c < 3; ++c) f[c] += rho_d[c] * std::numbers::inv_pi;
 }
+
+// What formulas inherit that have Lambert's base (J. H. Lambert. Photometria. 1760), f = rho_d / pi, and
+// those that have no lobe.
+struct LambertBase {
+  static constexpr std::array<ModelParameter, 1> kBase = {kDiffuseAlbedo};
+
+  template <typename T>
+  static void AddBase(const ReflectionGeometry&, const T* base, T* f) {
+    AddLambert(base, f);
+  }
+};
+
+struct NoLobe {
+  static constexpr std::array<ModelParameter, 0> kLobe = {};
+
+  template <typename T>
+  static void AddLobe(const ReflectionGeometry&, const T*, T*) {}
+};
 
 }  // namespace pbnbrdf

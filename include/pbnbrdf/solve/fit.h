@@ -35,7 +35,7 @@ struct ScheduleOptions {
   int max_iterations = 400;     // >= 0, without the energy term, and again with it; Adam: epochs
   double max_seconds = 3600.0;  // > 0
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
-                                     // with Adam is that of a mean (adam.h)
+                                     // with Adam is that of a mean (adam.cc)
 };
 
 // Of Adam; NBRDF's settings (Sztrajman et al. 2021) are the defaults.
@@ -47,10 +47,10 @@ struct AdamOptions {
 
 struct FitOptions {
   // By name:
-  //   lm           Levenberg-Marquardt on the normal equations (lm.h)
+  //   lm           Levenberg-Marquardt on the normal equations (lm.cc)
   //   ceres_lm     Ceres' own: the same steps, at several times the cost
   //   ceres_lbfgs  Ceres' L-BFGS: cheap iterations, but thousands of them
-  //   adam         on minibatches of the papers' own loss (adam.h), the published solver
+  //   adam         on minibatches of the papers' own loss (adam.cc), the published solver
   //   autodiff     Ceres' Levenberg-Marquardt on jets through the whole network: the slow reference
   std::string solver = "lm";
   ScheduleOptions schedule;

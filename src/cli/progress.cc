@@ -1,12 +1,28 @@
-#include "progress_line.h"
+#include "progress.h"
 
 #include <unistd.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <iomanip>
 #include <sstream>
 
 namespace pbnbrdf::cli {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+void OnInterrupt(int) {
+  interrupted = true;
+  std::signal(SIGINT, SIG_DFL);
+}
+
+}  // namespace
+
+void CatchInterrupt() { std::signal(SIGINT, OnInterrupt); }
+
+bool Interrupted() { return interrupted; }
 
 ProgressLine::ProgressLine(bool quiet) : shows_(!quiet && isatty(STDERR_FILENO)) {}
 

@@ -1,9 +1,9 @@
-// The network in single precision against the same in double, on each instruction set.
-#include "network/fast_neural_brdf.h"
+// NeuralBrdf::SinglePrecision against the same in double, on each instruction set.
 
 #include "brdf/direction_pairs.h"
 #include "instruction_sets.h"
 #include "network/random_network.h"
+#include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
 namespace {
@@ -34,7 +34,7 @@ void ExpectAgreement(const NeuralBrdf& network, const std::vector<DirectionPair>
   // The first input is to 1e-4 only.
   const bool bends = encoding == Encoding::kMerl;
   ForEachInstructionSet([&](const char* set) {
-    const std::vector<Rgb> values = Values(FastNeuralBrdf(network), pairs);
+    const std::vector<Rgb> values = Values(*network.SinglePrecision(), pairs);
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       for (int c = 0; c < 3; ++c) {
         const double tolerance =
@@ -46,7 +46,7 @@ void ExpectAgreement(const NeuralBrdf& network, const std::vector<DirectionPair>
   });
 }
 
-TEST(FastNeuralBrdf, AgreesWithDoublePrecision) {
+TEST(SinglePrecision, AgreesWithDoublePrecision) {
   const std::vector<DirectionPair> pairs = PairsOfTheSphere(3000);
   for (const auto& [name, encoding] : kEncodings) {
     for (const auto& [activation_name, activation] : kActivations) {
@@ -59,7 +59,7 @@ TEST(FastNeuralBrdf, AgreesWithDoublePrecision) {
   ExpectAgreement(RandomNetwork(Encoding::kMultiscale, Activation::kTanh, {1, 40, 7}, 0.3), pairs);
 }
 
-TEST(FastNeuralBrdf, AgreesCloseToTheMirrorDirection) {
+TEST(SinglePrecision, AgreesCloseToTheMirrorDirection) {
   std::vector<DirectionPair> pairs;
   for (double offset = 1.0; offset > 1e-12; offset *= 0.7) {
     for (double theta : {0.0, 0.4, 1.3}) {
@@ -71,36 +71,36 @@ TEST(FastNeuralBrdf, AgreesCloseToTheMirrorDirection) {
   ExpectAgreement(RandomNetwork(Encoding::kAnisotropic), pairs);
 }
 
-TEST(FastNeuralBrdf, IsAsIsotropicAsItsEncoding) {
+TEST(SinglePrecision, IsAsIsotropicAsItsEncoding) {
   for (const auto& [name, encoding] : kEncodings) {
-    EXPECT_EQ(FastNeuralBrdf(RandomNetwork(encoding)).IsIsotropic(), name != "anisotropic");
+    EXPECT_EQ(RandomNetwork(encoding).SinglePrecision()->IsIsotropic(), name != "anisotropic");
   }
 }
 
-TEST(FastNeuralBrdf, AnyNumberOfPairs) {
+TEST(SinglePrecision, AnyNumberOfPairs) {
   const NeuralBrdf network = RandomNetwork(Encoding::kMultiscale);
   const std::vector<DirectionPair> all = RandomPairs(300, /*seed=*/2);
-  const std::vector<Rgb> expected = Values(FastNeuralBrdf(network), all);
+  const std::vector<Rgb> expected = Values(*network.SinglePrecision(), all);
   for (std::size_t count : {0, 1, 127, 128, 129, 256, 300}) {
     // One value more, to stay as it is.
     std::vector<Rgb> values(count + 1, Rgb{-1.0, -1.0, -1.0});
-    const FastNeuralBrdf fast(network);
-    fast.EvaluateUnclipped({all.data(), count}, {values.data(), count});
+    const auto fast = network.SinglePrecision();
+    fast->EvaluateUnclipped({all.data(), count}, {values.data(), count});
     for (std::size_t n = 0; n < count; ++n) ASSERT_EQ(values[n], expected[n]);
     EXPECT_EQ(values[count][0], -1.0);
   }
 }
 
-TEST(FastNeuralBrdf, ReciprocityIsExactToTheBit) {
+TEST(SinglePrecision, ReciprocityIsExactToTheBit) {
   const std::vector<DirectionPair> pairs = PairsOfTheSphere(20000);
   std::vector<DirectionPair> swapped;
   for (const DirectionPair& pair : pairs) swapped.push_back(Swapped(pair));
   std::reverse(swapped.begin(), swapped.end());
   for (const auto& [name, encoding] : kEncodings) {
     if (!IsReciprocal(encoding)) continue;
-    const FastNeuralBrdf network(RandomNetwork(encoding));
+    const auto network = RandomNetwork(encoding).SinglePrecision();
     ForEachInstructionSet([&](const char* set) {
-      const std::vector<Rgb> there = Values(network, pairs), back = Values(network, swapped);
+      const std::vector<Rgb> there = Values(*network, pairs), back = Values(*network, swapped);
       for (std::size_t n = 0; n < pairs.size(); ++n) {
         ASSERT_EQ(there[n], back[pairs.size() - 1 - n]) << set;
       }
@@ -108,17 +108,17 @@ TEST(FastNeuralBrdf, ReciprocityIsExactToTheBit) {
   }
 }
 
-TEST(FastNeuralBrdf, IsZeroBelowTheHorizon) {
+TEST(SinglePrecision, IsZeroBelowTheHorizon) {
   const std::vector<DirectionPair> pairs = PairsOfTheSphere(1000);
   std::vector<Rgb> values(pairs.size());
-  FastNeuralBrdf(RandomNetwork(Encoding::kMultiscale)).Evaluate(pairs, values);
+  RandomNetwork(Encoding::kMultiscale).SinglePrecision()->Evaluate(pairs, values);
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     if (pairs[n].AboveHorizon()) continue;
     EXPECT_EQ(values[n], Rgb{});
   }
 }
 
-TEST(FastNeuralBrdf, NothingNonFiniteComesOut) {
+TEST(SinglePrecision, NothingNonFiniteComesOut) {
   std::vector<DirectionPair> pairs = PairsOfTheSphere(1000);
   const Vec3 up = {0.0, 0.0, 1.0};
   pairs.push_back({up, {0.0, 0.0, -1.0}});
@@ -126,10 +126,10 @@ TEST(FastNeuralBrdf, NothingNonFiniteComesOut) {
   pairs.push_back({{}, {}});
   for (double scale : {1.0, 1e3, 1e30, 1e150}) {
     for (const auto& [name, activation] : kActivations) {
-      const FastNeuralBrdf network(
-          RandomNetwork(Encoding::kMultiscale, activation, {21, 21}, scale));
+      const auto network =
+          RandomNetwork(Encoding::kMultiscale, activation, {21, 21}, scale).SinglePrecision();
       ForEachInstructionSet([&](const char* set) {
-        for (const Rgb& value : Values(network, pairs)) {
+        for (const Rgb& value : Values(*network, pairs)) {
           for (double f : value) EXPECT_TRUE(f >= 0.0 && f <= Brdf::kLargestValue) << set;
         }
       });

@@ -1,10 +1,11 @@
-// progress_line.h: a line on a terminal that says how far the work is.
+// progress.h: long work shows how far it is, and Ctrl-C ends it early.
 #pragma once
 
 #include <string>
 
 namespace pbnbrdf::cli {
 
+// A line on a terminal that says how far the work is.
 class ProgressLine {
  public:
   // Shows nothing if it is quiet, or if standard error isn't a terminal.
@@ -23,5 +24,10 @@ class ProgressLine {
 
 // "1.2 s"
 std::string SecondsText(double seconds);
+
+// From now on the first Ctrl-C makes Interrupted() true; a second one ends the program.
+void CatchInterrupt();
+
+bool Interrupted();
 
 }  // namespace pbnbrdf::cli

@@ -1,0 +1,71 @@
+// formats.h: what ExportedFiles (export.h) writes. Each function is in the file of its name.
+//
+// [1] W. Jakob et al. Mitsuba 3 renderer. https://mitsuba-renderer.org
+// [2] Open Neural Network Exchange. https://onnx.ai, onnx/onnx.proto.
+#pragma once
+
+#include <string>
+
+#include "pbnbrdf/brdf/importance_sampler.h"
+#include "pbnbrdf/network/neural_brdf.h"
+
+namespace pbnbrdf {
+
+// A C99 header that needs <math.h> only and is C++ as well:
+//
+//   void NAME_eval(const float wi[3], const float wo[3], float rgb[3]);
+//
+// wi points to the light, wo to the viewer: unit vectors, normal +z. rgb: linear, 1/sr, without the
+// cosine; 0 where a direction isn't above the horizon. Computed in double precision: it is
+// the value of NeuralBrdf at the same directions, rounded to float. Of a reciprocal encoding the
+// value has the same bits if wi and wo are exchanged, with or without contraction to fused
+// multiply-adds (but not with -ffast-math, where compilers promise nothing).
+//
+// name: an identifier of C. Throws Error otherwise.
+std::string CSource(const NeuralBrdf& network, const std::string& name);
+
+// Functions for a shader of GLSL ES 3.00 (WebGL 2) or later, to be put after its #version line:
+//
+//   vec3 NAME_eval(vec3 wi, vec3 wo);
+//
+// Directions and value as of CSource, in single precision (highp): about 1e-5 f + 1e-6 apart
+// from NeuralBrdf, with the merl encoding up to 1e-4 (1 + f). It uses no built-in
+// function but sqrt, abs, floor, min and max: the language allows an arc tangent to be off by 4096
+// units in the last place. Of a reciprocal encoding the value has the same bits if wi and wo are
+// exchanged.
+//
+// It makes highp the default precision, also for what follows it in the shader.
+//
+// name: an identifier of GLSL that doesn't begin with "gl_" nor has "__" in it. Throws Error
+// otherwise, or if a weight is beyond single precision.
+std::string GlslSource(const NeuralBrdf& network, const std::string& name);
+
+// A Python file that registers the BSDF "pbnbrdf" in Mitsuba 3 [1] when it is imported after mitsuba.set_variant(),
+// for scalar, LLVM and CUDA variants in RGB or monochromatic mode. It needs nothing but Mitsuba. It
+// draws directions as ImportanceSampler does. A scene names another network by the parameter
+// "filename", and its proposal by "alpha_u", "alpha_v" and "lobe_weight"; without them it takes the
+// file `network` from beside itself, and the proposal given here.
+std::string MitsubaPlugin(const std::string& network, const LobeProposal& proposal);
+
+// The bytes of an ONNX model [2] of operator set 17, IR version 8: inputs "wi" and "wo" (N x 3, float32),
+// output "rgb" (N x 3, float32), directions and value as of CSource. It includes encoding,
+// horizon and output unit. About 1e-5 f + 1e-6 apart from NeuralBrdf, with the merl encoding
+// up to 1e-4 (1 + f). Of a reciprocal encoding the value has the same bits if wi and wo
+// are exchanged, as all inputs of the first layer have.
+//
+// Throws Error if a weight is beyond float32.
+std::string OnnxModel(const NeuralBrdf& network);
+
+// A CSV with the columns theta_i,phi_i,theta_o,phi_o (radians) and r,g,b (linear, 1/sr, without the
+// cosine), one header line. The grid is one of Rusinkiewicz angles:
+//
+//   theta_h = (pi/2) (i/45)^2, i = 0..44     dense near the mirror direction
+//   theta_d = i 5 degrees, i = 0..17
+//   phi_d   = i 15 degrees, i = 0..23
+//   phi_h   = 0 if the Brdf is isotropic, else i 30 degrees, i = 0..11
+//
+// of which the pairs above the horizon are written, each once. Values are those at the angles as
+// they are written. Isotropic: phi_i = 0.
+std::string CsvTable(const Brdf& brdf);
+
+}  // namespace pbnbrdf
