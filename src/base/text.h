@@ -12,6 +12,9 @@ std::vector<std::string> Split(std::string_view text, char separator);
 
 std::string_view Trim(std::string_view text);
 
+// With small letters for the capitals of ASCII.
+std::string LowerCase(std::string_view text);
+
 // Throws Error "<field>: '<text>' is not a finite number" unless all of `text` is one.
 double ParseNumber(std::string_view field, std::string_view text);
 

@@ -11,12 +11,15 @@ namespace pbnbrdf::cli {
 
 struct DirectionCsv {
   std::string header;
+  char separator = ',';
   std::vector<std::string> rows;  // as they are in the file
   std::vector<DirectionPair> pairs;
+  std::size_t left_out = 0;  // rows that lack a number
 };
 
-// The header names theta_i,phi_i,theta_o,phi_o (radians) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z
-// (normalised here) among its columns. Blank lines are skipped. Throws Error, naming `file` and the line.
+// The columns and dialects that a material's CSV may have (scattered_files.h), but for values: if one of r, g, b
+// is there already, what is appended would be a second column of that name. Throws Error, naming `file` and the
+// line.
 DirectionCsv ParseDirectionCsv(const std::string& file, const std::string& text);
 
 // The rows with r,g,b appended, with 17 significant digits.

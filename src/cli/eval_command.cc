@@ -37,6 +37,9 @@ int RunEval(const EvalOptions& options, const Arguments&) {
   CheckOutputs({{"out", options.out}});
   const std::unique_ptr<Brdf> material = options.material.Open();
   const DirectionCsv csv = ReadDirections(options.directions);
+  if (csv.left_out > 0) {
+    std::cerr << "pbnbrdf: " << csv.left_out << " rows that lack a direction are left out\n";
+  }
   std::vector<Rgb> values(csv.pairs.size());
   material->Evaluate(csv.pairs, values);
   WriteFile(options.out, FormatDirectionCsv(csv, values));
@@ -53,10 +56,13 @@ Command EvalCommand() {
       "  pbnbrdf eval --material=gold.safetensors --directions=pairs.csv --out=values.csv\n";
   command.notes = StrCat(
       "The first line of the CSV file names its columns. They must include "
-      "theta_i,phi_i,theta_o,phi_o (radians) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (vectors of any "
-      "length); wi points to the light, wo to the viewer. All columns are kept, and r,g,b are "
-      "appended: linear RGB in 1/sr, without the cosine, with 17 significant digits. Values are 0 "
-      "where a direction isn't above the horizon.\n\n",
+      "theta_i,phi_i,theta_o,phi_o (radians; theta_i_deg, ...: degrees) or "
+      "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (vectors of any length); wi points to the light, wo to the "
+      "viewer; a negative theta is on the other side of the normal. Columns are parted by ';', "
+      "',', "
+      "a tab or blanks. All are kept, and r,g,b are appended: linear RGB in 1/sr, without the "
+      "cosine, with 17 significant digits. Values are 0 where a direction isn't above the horizon. "
+      "Rows that lack a direction are left out.\n\n",
       kSourceNotes);
   command.Takes(EvalFields, RunEval);
   return command;

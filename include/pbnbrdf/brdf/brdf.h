@@ -12,7 +12,8 @@ namespace pbnbrdf {
 
 struct BrdfSample {
   DirectionPair pair;
-  Rgb value;  // f in 1/sr, >= 0
+  Rgb value;            // f in 1/sr; noise makes dark measurements negative
+  double weight = 1.0;  // of its residuals in a fit, in (0, 1]; 1: as well known as any
 };
 
 // A bidirectional reflectance distribution function f(wi, wo): linear RGB in 1/sr, finite, not
