@@ -15,6 +15,9 @@ std::string_view Trim(std::string_view text);
 // "a,b,c" with "," for the separator.
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
+// With small letters for the capitals of ASCII.
+std::string LowerCase(std::string_view text);
+
 // Throws Error "<field>: '<text>' is not a finite number" unless all of `text` is one.
 double ParseNumber(std::string_view field, std::string_view text);
 

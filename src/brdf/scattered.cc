@@ -13,21 +13,23 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kSmallestCosine = 1e-4;
+constexpr double kLeastWeighted = -0.999;  // f cos_i: log1p is defined beyond -1
 constexpr std::size_t kNeighbors = 8;
 // Squared distance of measurements at one place: rounding of their angles.
 constexpr double kSamePlace = 1e-20;
 
 bool IsUsable(const BrdfSample& sample) {
-  return std::min(sample.pair.wi.z, sample.pair.wo.z) > kSmallestCosine &&
+  const double cos_i = sample.pair.wi.z;
+  return std::min(cos_i, sample.pair.wo.z) > kSmallestCosine &&
          std::all_of(sample.value.begin(), sample.value.end(),
-                     [](double v) { return v >= 0.0 && std::isfinite(v); });
+                     [&](double v) { return v * cos_i > kLeastWeighted && std::isfinite(v); });
 }
 
 ScatteredData Usable(ScatteredData data) {
   data.left_out += std::erase_if(data.samples, [](const auto& s) { return !IsUsable(s); });
   if (data.samples.empty()) {
     Fail("no data: of ", data.left_out,
-         " measurements none has both directions above the horizon and no negative value");
+         " measurements none has both directions above the horizon and a usable value");
   }
   for (BrdfSample& sample : data.samples) {
     for (double& value : sample.value) value = std::min(value, Brdf::kLargestValue);

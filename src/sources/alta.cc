@@ -164,7 +164,6 @@ bool LooksLikeAlta(std::string_view start) {
 
 ScatteredBrdf ReadAlta(const std::string& path) {
   TextTable table = TextTable::Read(path, TextTable::Cells::kBlanks);
-  table.RequireLastLineEnd();
   Header header;
   Layout layout = {};
   ScatteredData data;

@@ -74,4 +74,26 @@ std::vector<Rgb> SpectrumToRgb(std::span<const float> wavelengths) {
   return weights;
 }
 
+std::vector<Rgb> SpectrumToRgb(const std::string& path, std::span<const float> wavelengths) {
+  try {
+    return SpectrumToRgb(wavelengths);
+  } catch (const Error& error) {
+    Fail(path, ": ", error.what());
+  }
+}
+
+std::vector<Rgb> XyzToRgb() {
+  std::vector<Rgb> weights(3);
+  for (int k = 0; k < 3; ++k) weights[k] = {kToRgb[0][k], kToRgb[1][k], kToRgb[2][k]};
+  return weights;
+}
+
+Rgb WeightedSum(std::span<const Rgb> weights, std::span<const double> values) {
+  Rgb sum = {};
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    for (int c = 0; c < 3; ++c) sum[c] += weights[k][c] * values[k];
+  }
+  return sum;
+}
+
 }  // namespace pbnbrdf

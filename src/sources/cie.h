@@ -12,6 +12,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pbnbrdf/brdf/direction.h"
@@ -29,5 +30,14 @@ double IlluminantD65(double wavelength);
 // to 1; some are negative. A single wavelength: r = g = b. Throws Error if the wavelengths cover less
 // than 430 to 660 nm, the part without which a channel would be little more than a guess.
 std::vector<Rgb> SpectrumToRgb(std::span<const float> wavelengths);
+
+// The same; its Error names the file.
+std::vector<Rgb> SpectrumToRgb(const std::string& path, std::span<const float> wavelengths);
+
+// Such weights of X, Y, Z, which are (0.9505, 1, 1.089) where r = g = b = 1 (IEC 61966-2-1).
+std::vector<Rgb> XyzToRgb();
+
+// The sum of weights[k] times values[k]; of the same size.
+Rgb WeightedSum(std::span<const Rgb> weights, std::span<const double> values);
 
 }  // namespace pbnbrdf

@@ -1,39 +1,48 @@
 #include "sources/direction_columns.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "pbnbrdf/base/error.h"
+#include "sources/angles.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kSlack = 1e-3;  // of angles' ranges, radians: rounding
 constexpr std::array<const char*, 4> kAngles = {"theta_i", "phi_i", "theta_o", "phi_o"};
 constexpr std::array<const char*, 6> kVectors = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 
 }  // namespace
 
-std::optional<DirectionColumns> DirectionColumns::Find(const TextTable& table) {
+std::optional<DirectionColumns> DirectionColumns::Find(TextTable* table) {
+  table->NameColumns();
   DirectionColumns columns;
   for (const char* name : kAngles) {
-    if (const auto at = table.FindColumn(name)) {
+    if (const auto at = table->FindColumn(name)) {
       columns.angles_.push_back({*at, 1.0});
-    } else if (const auto degrees = table.FindColumn(StrCat(name, "_deg"))) {
-      columns.angles_.push_back({*degrees, kPi / 180.0});
+    } else if (const auto degrees = table->FindColumn(StrCat(name, "_deg"))) {
+      columns.angles_.push_back({*degrees, kDegree});
     }
   }
   if (columns.angles_.size() == kAngles.size()) return columns;
   columns.angles_.clear();
   for (const char* name : kVectors) {
-    const auto at = table.FindColumn(name);
-    if (!at) return std::nullopt;
+    const auto at = table->FindColumn(name);
+    if (!at) {
+      table->ForgetNames();
+      return std::nullopt;
+    }
     columns.vectors_.push_back({*at, 1.0});
   }
   return columns;
+}
+
+bool DirectionColumns::AreMissing(const TextTable& table) const {
+  const auto& columns = angles_.empty() ? vectors_ : angles_;
+  return std::any_of(columns.begin(), columns.end(),
+                     [&](const Column& column) { return table.IsMissing(column.at); });
 }
 
 DirectionPair DirectionColumns::Parse(const TextTable& table) const {
@@ -43,17 +52,10 @@ DirectionPair DirectionColumns::Parse(const TextTable& table) const {
 DirectionPair DirectionColumns::FromAngles(const TextTable& table) const {
   std::array<double, 4> angles;
   for (std::size_t k = 0; k < angles.size(); ++k) {
-    const auto [at, scale] = angles_[k];
-    angles[k] = scale * table.Number(at);
-    const bool is_theta = k % 2 == 0;
-    const double min = is_theta ? 0.0 : -2.0 * kPi, max = is_theta ? kPi : 2.0 * kPi;
-    if (!(angles[k] >= min - kSlack && angles[k] <= max + kSlack)) {
-      Fail(table.Place(), ", ", table.names()[at], ": ", table.cells()[at], " is ", angles[k],
-           " radians; must be ", min, " to ", max, " (", kAngles[k], " is in radians, ", kAngles[k],
-           "_deg in degrees)");
-    }
+    angles[k] = angles_[k].scale * table.Number(angles_[k].at);
   }
-  return {FromSpherical(angles[0], angles[1]), FromSpherical(angles[2], angles[3])};
+  return PairFromAngles(table.Place(), angles,
+                        " (theta_i is in radians, theta_i_deg in degrees; so are the others)");
 }
 
 DirectionPair DirectionColumns::FromVectors(const TextTable& table) const {

@@ -1,6 +1,6 @@
 // direction_columns.h: the columns of a table that say where light comes from and where it goes:
 // theta_i, phi_i, theta_o, phi_o in radians, or theta_i_deg, ... in degrees, each by itself; or wi_x, wi_y,
-// wi_z, wo_x, wo_y, wo_z, of any length but 0.
+// wi_z, wo_x, wo_y, wo_z, of any length but 0. A negative theta is on the other side of the normal: phi + pi.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,12 @@ inline constexpr char kDirectionColumns[] =
 
 class DirectionColumns {
  public:
-  // None if the table's names lack them. Angles come first where both are there.
-  static std::optional<DirectionColumns> Find(const TextTable& table);
+  // Names the table's columns by its line. None, and the names forgotten, if directions aren't among them.
+  // Angles come first where both are there. Throws Error if two columns have one of the names.
+  static std::optional<DirectionColumns> Find(TextTable* table);
+
+  // Whether one of them is missing in the table's line.
+  bool AreMissing(const TextTable& table) const;
 
   // Of the table's line. Throws Error if one isn't a number, not in its range, or a vector has no length.
   DirectionPair Parse(const TextTable& table) const;

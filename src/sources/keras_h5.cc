@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <string_view>
 
 #include "pbnbrdf/base/error.h"
@@ -19,7 +21,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "HDF5 files are little-endian");
 
-constexpr std::uint64_t kFreeBlock = 16;  // bytes of a local heap's smallest free block
+constexpr std::uint64_t kFreeBlock = 16;    // bytes of a local heap's smallest free block
+constexpr std::size_t kMaxLinks = 4096;     // of a group; groups of a file
+constexpr std::size_t kMaxTexts = 1 << 16;  // bytes of an attribute
+constexpr int kMaxDepth = 6;                // of groups in groups
+constexpr std::string_view kExpected =
+    "expected dense layers of Keras, each with a kernel and a bias";
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
 using Handle = Hdf5Handle;
@@ -102,8 +109,7 @@ bool Has(const std::string& place, const Handle& group, const std::string& name)
 Handle OpenObject(const std::string& place, const Handle& group, const std::string& name,
                   H5I_type_t type) {
   if (!Has(place, group, name)) {
-    Fail(place,
-         " is missing; expected Keras layers dense_1, dense_2, ... with kernel:0 and bias:0");
+    Fail(place, " is missing; ", kExpected);
   }
   Handle object(H5Oopen(group.get(), name.c_str(), H5P_DEFAULT), H5Oclose);
   if (!object) FailDamaged(place);
@@ -164,6 +170,126 @@ Tensor ReadDataset(const std::string& place, const Handle& group, const std::str
   return tensor;
 }
 
+// The texts of an attribute, if it holds a list of such of a fixed size as Keras writes them; else none.
+std::vector<std::string> TextsOf(const Handle& group, const char* name) {
+  if (H5Aexists(group.get(), name) <= 0) return {};
+  const Handle attribute(H5Aopen(group.get(), name, H5P_DEFAULT), H5Aclose);
+  if (!attribute) return {};
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if (!type || !space || H5Tget_class(type.get()) != H5T_STRING) return {};
+  if (H5Tis_variable_str(type.get()) != 0) return {};
+  const std::size_t size = H5Tget_size(type.get());
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (count <= 0 || size == 0 || size > kMaxTexts / static_cast<std::size_t>(count)) return {};
+  std::string bytes(size * static_cast<std::size_t>(count), '\0');
+  if (H5Aread(attribute.get(), type.get(), bytes.data()) < 0) return {};
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < bytes.size(); at += size) {
+    texts.emplace_back(bytes.substr(at, size).c_str());
+  }
+  return texts;
+}
+
+// The links of a group to objects of its file.
+std::vector<std::string> LinksOf(const std::string& place, const Handle& group) {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* list) -> herr_t {
+    auto* found = static_cast<std::vector<std::string>*>(list);
+    if (info->type == H5L_TYPE_HARD) found->emplace_back(name);
+    return found->size() > kMaxLinks ? -1 : 0;
+  };
+  if (H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) < 0) {
+    FailDamaged(place);
+  }
+  return names;
+}
+
+// "dense_12" as "dense" and 12, "dense" as that and 0: Keras counts layers of a kind.
+std::pair<std::string, unsigned long> WithNumber(const std::string& name) {
+  const std::size_t end = name.find_last_not_of("0123456789") + 1;
+  std::string kind = name.substr(0, end);
+  if (kind.ends_with("_")) kind.pop_back();
+  return {kind, end < name.size() ? std::strtoul(name.c_str() + end, nullptr, 10) : 0};
+}
+
+// Which of the names there is.
+std::optional<std::string> OneOf(const std::vector<std::string>& links,
+                                 std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (std::find(links.begin(), links.end(), name) != links.end()) return name;
+  }
+  return std::nullopt;
+}
+
+// Finds the layers of a file: groups, however deep, with a kernel and a bias.
+class LayerFinder {
+ public:
+  LayerFinder(const std::string& path, std::size_t file_size) : path_(path), size_(file_size) {}
+
+  void Visit(const std::string& name, const Handle& group, int depth) {
+    if (++visits_ > kMaxLinks) Fail(path_, ": more groups than a Keras file has");
+    const std::vector<std::string> links = LinksOf(path_, group);
+    if (const auto kernel = OneOf(links, {"kernel:0", "kernel", "0"})) {
+      return Read(name, group, *kernel, OneOf(links, {"bias:0", "bias", "1"}).value_or("bias:0"));
+    }
+    if (depth == 0) return;
+    std::string kind;  // of the layers below, where no list puts them in order
+    for (const auto& [child, listed] : InOrder(group, links)) {
+      const Handle object(H5Oopen(group.get(), child.c_str(), H5P_DEFAULT), H5Oclose);
+      if (!object) FailDamaged(path_);
+      if (H5Iget_type(object.get()) != H5I_GROUP) continue;
+      const std::size_t before = layers.size();
+      Visit(StrCat(name, "/", child), object, depth - 1);
+      if (layers.size() == before || listed) continue;
+      const std::string this_kind = WithNumber(child).first;
+      if (!kind.empty() && kind != this_kind) {
+        Fail(path_, ": layers ", kind, " and ", this_kind, ", and no list of fixed-length names, ",
+             "layer_names, says which is the first");
+      }
+      kind = this_kind;
+    }
+  }
+
+  std::vector<KerasDenseLayer> layers;
+
+ private:
+  // Those that an attribute lists, in its order; if there is none, all, by number.
+  static std::vector<std::pair<std::string, bool>> InOrder(const Handle& group,
+                                                           std::vector<std::string> links) {
+    std::vector<std::pair<std::string, bool>> order;
+    for (std::string& name : TextsOf(group, "layer_names")) {
+      if (OneOf(links, {name.c_str()})) order.emplace_back(std::move(name), true);
+    }
+    if (!order.empty()) return order;
+    std::sort(links.begin(), links.end(), [](const std::string& a, const std::string& b) {
+      return WithNumber(a) < WithNumber(b);
+    });
+    for (std::string& name : links) order.emplace_back(std::move(name), false);
+    return order;
+  }
+
+  void Read(const std::string& name, const Handle& group, const std::string& kernel,
+            const std::string& bias) {
+    if (layers.size() == NetworkShape::kMaxLayers) Fail(path_, ": more layers than are read");
+    const auto read = [&](const std::string& dataset) {
+      return ReadDataset(StrCat(path_, ": dataset ", name, "/", dataset), group, dataset, size_);
+    };
+    layers.push_back({name, read(kernel), read(bias), kernel, bias});
+  }
+
+  const std::string& path_;
+  std::size_t size_, visits_ = 0;
+};
+
+// Where the layers are: in a whole model, in weights of Keras 3, in weights of Keras 2.
+std::string LayersGroup(const std::string& path, const Handle& file) {
+  for (const char* name : {"model_weights", "layers"}) {
+    if (Has(path, file, name)) return name;
+  }
+  return ".";
+}
+
 }  // namespace
 
 std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
@@ -176,20 +302,15 @@ std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
   const std::string image = path + "/image";
   const Handle file(H5Fopen(image.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file) FailDamaged(path);
-  std::vector<KerasDenseLayer> layers;
-  for (int k = 1; k <= NetworkShape::kMaxLayers; ++k) {
-    const std::string name = StrCat("dense_", k), place = StrCat(path, ": dataset /", name);
-    if (k > 1 && !Has(place, file, name)) break;
-    // Keras repeats the layer's name.
-    const Handle outer = OpenObject(place, file, name, H5I_GROUP);
-    const std::string inner_place = StrCat(place, "/", name);
-    const Handle inner = OpenObject(inner_place, outer, name, H5I_GROUP);
-    const auto read = [&](const char* dataset) {
-      return ReadDataset(StrCat(inner_place, "/", dataset), inner, dataset, bytes.size());
-    };
-    layers.push_back({name, read("kernel:0"), read("bias:0")});
+  const std::string name = LayersGroup(path, file);
+  const Handle group(H5Oopen(file.get(), name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (!group) FailDamaged(path);
+  LayerFinder finder(path, bytes.size());
+  if (H5Iget_type(group.get()) == H5I_GROUP) {
+    finder.Visit(name == "." ? "" : "/" + name, group, kMaxDepth);
   }
-  return layers;
+  if (finder.layers.empty()) Fail(path, ": ", kExpected);
+  return std::move(finder.layers);
 }
 
 }  // namespace pbnbrdf

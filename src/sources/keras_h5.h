@@ -1,5 +1,11 @@
-// keras_h5.h: the weights of dense layers in an HDF5 file that Keras wrote: the datasets
-// /dense_1/dense_1/kernel:0 (in x out), /dense_1/dense_1/bias:0 (out), /dense_2/dense_2/kernel:0, ...
+// keras_h5.h: the weights of dense layers in an HDF5 file that Keras wrote. A layer is a group, however deep, that
+// holds its kernel (in x out) and bias (out):
+//
+//   kernel:0, bias:0   weights of Keras 2, /dense_1/dense_1/, or of a whole model, /model_weights/dense_1/...
+//   vars/0, vars/1     weights of Keras 3, /layers/dense_1/vars/
+//
+// Their order is that of the attribute layer_names, where it is a list of names of a fixed length as Keras writes
+// it. Else layers must be of one name but for a number at its end, which is then their order; none is 0.
 // Nothing else of a file is read, and neither code nor further files that it may name.
 #pragma once
 
@@ -11,13 +17,14 @@
 namespace pbnbrdf {
 
 struct KerasDenseLayer {
-  std::string name;  // "dense_1"
+  std::string name;  // "dense_1" to write, "/dense_1/dense_1" when read
   Tensor kernel, bias;
+  std::string kernel_name = "kernel:0", bias_name = "bias:0";
 };
 
-// The layers dense_1, dense_2, ... up to the first that is missing; float32 or float64 of either
-// byte order, stored contiguously. Throws Error if the file is missing, larger than
-// kMaxWeightFileSize, not HDF5 or damaged, or if a layer's dataset is missing or of another type.
+// The layers in order; float32 or float64 of either byte order, stored contiguously. Throws Error if the
+// file is missing, larger than kMaxWeightFileSize, not HDF5 or damaged, if there are no layers or their order
+// isn't known, or if a layer's dataset is missing or of another type.
 // May be called from several threads at once: calls take turns, as HDF5 isn't thread-safe. If this
 // is the first use of HDF5 in a program, HDF5 won't close what the program itself leaves open.
 std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path);

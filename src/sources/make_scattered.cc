@@ -17,9 +17,10 @@ bool HaveOneIncidentAzimuth(std::span<const BrdfSample> samples) {
     const Vec3& wi = sample.pair.wi;
     if (std::hypot(wi.x, wi.y) < kSameAngle) continue;
     if (first == nullptr) first = &wi;
-    const double turn =
-        std::atan2(first->x * wi.y - first->y * wi.x, first->x * wi.x + first->y * wi.y);
-    if (std::abs(turn) > kSameAngle) return false;
+    const double cross = first->x * wi.y - first->y * wi.x;
+    if (std::abs(cross) > kSameAngle * std::hypot(first->x, first->y) * std::hypot(wi.x, wi.y)) {
+      return false;
+    }
   }
   return true;
 }

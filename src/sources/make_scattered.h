@@ -8,7 +8,8 @@
 
 namespace pbnbrdf {
 
-// Whether all wi, but those at the normal, have the same azimuth: phi_h is then known of no pair.
+// Whether all wi, but those at the normal, have the same azimuth, or the opposite one, which a sample turned by
+// 180 degrees gives: what else phi_h does is then unknown, and the material taken for isotropic.
 bool HaveOneIncidentAzimuth(std::span<const BrdfSample> samples);
 
 // Its Error names the file.

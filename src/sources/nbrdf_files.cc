@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/text.h"
 #include "pbnbrdf/base/error.h"
 #include "sources/keras_h5.h"
 #include "sources/npy.h"
@@ -11,6 +12,7 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::string_view kFirstNpy = "fc1.npy";
+constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n", kNpyMagic = "\x93NUMPY";
 constexpr int kNpyLayers = 3;
 
 // A tensor and how messages name it.
@@ -23,14 +25,17 @@ struct Layer {
   Named kernel, bias;  // in x out; out
 };
 
-bool IsKeras(const std::string& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
+bool IsKeras(const std::string& path) {
+  const std::string name = LowerCase(path);
+  return name.ends_with(".h5") || name.ends_with(".hdf5");
+}
 
 std::vector<Layer> ReadKerasLayers(const std::string& path) {
   std::vector<Layer> layers;
   for (KerasDenseLayer& layer : ReadKerasDenseLayers(path)) {
-    const std::string group = StrCat(path, ": dataset /", layer.name, "/", layer.name);
-    layers.push_back({{group + "/kernel:0", std::move(layer.kernel)},
-                      {group + "/bias:0", std::move(layer.bias)}});
+    const std::string group = StrCat(path, ": dataset ", layer.name, "/");
+    layers.push_back({{group + layer.kernel_name, std::move(layer.kernel)},
+                      {group + layer.bias_name, std::move(layer.bias)}});
   }
   return layers;
 }
@@ -125,10 +130,16 @@ void CheckIsNbrdf(const NeuralBrdf& network) {
 
 }  // namespace
 
-bool IsNbrdfFile(const std::string& path) { return IsKeras(path) || path.ends_with(".npy"); }
+bool IsNbrdfFile(const std::string& path) {
+  return IsKeras(path) || LowerCase(path).ends_with(".npy");
+}
+
+bool LooksLikeNbrdf(std::string_view start) {
+  return start.starts_with(kHdf5Magic) || start.starts_with(kNpyMagic);
+}
 
 NeuralBrdf ReadNbrdf(const std::string& path) {
-  const bool keras = IsKeras(path);
+  const bool keras = IsKeras(path) || ReadStart(path, kHdf5Magic.size()) == kHdf5Magic;
   const std::vector<Layer> layers = keras ? ReadKerasLayers(path) : ReadNpyLayers(path);
   std::vector<int> hidden = HiddenSizes(layers);
   std::vector<double> weights;

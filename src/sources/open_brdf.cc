@@ -1,5 +1,9 @@
 #include "pbnbrdf/sources/open_brdf.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "base/text.h"
@@ -7,90 +11,135 @@
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/sources/astm.h"
+#include "pbnbrdf/sources/cornell.h"
+#include "pbnbrdf/sources/fred.h"
+#include "pbnbrdf/sources/in_plane.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/nbrdf_files.h"
 #include "pbnbrdf/sources/rgl.h"
 #include "pbnbrdf/sources/scattered_files.h"
 #include "pbnbrdf/sources/sgd_file.h"
+#include "pbnbrdf/sources/zemax.h"
 #include "sources/tensor_file.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::size_t kStart = 4096;  // bytes that tell what a file is
-constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n", kNpyMagic = "\x93NUMPY";
+constexpr std::size_t kStart = 1 << 16;  // bytes that tell what a file is; long comments come first
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 template <class Source>
 std::unique_ptr<Brdf> Boxed(Source source) {
   return std::make_unique<Source>(std::move(source));
 }
 
+// What tells a file's format: its first bytes, and how many it has.
+struct Content {
+  std::string_view start;
+  std::uintmax_t size;
+};
+
 // A JSON object behind its 8-byte length.
-bool LooksLikeSafetensors(std::string_view start) {
-  return start.size() > 8 && start[8] == '{' && start.substr(6, 2) == std::string_view("\0\0", 2);
+bool LooksLikeSafetensors(const Content& file) {
+  return file.start.size() > 8 && file.start[8] == '{' &&
+         file.start.substr(6, 2) == std::string_view("\0\0", 2);
 }
 
-bool LooksLikeModel(std::string_view start) {
-  return Trim(start).starts_with("{") && start.find("\"model\"") != start.npos;
+bool LooksLikeModel(const Content& file) {
+  return Trim(file.start).starts_with("{") && file.start.find("\"model\"") != file.start.npos;
 }
 
-// The first line that isn't a comment names columns of directions.
-bool LooksLikeCsv(std::string_view start) {
-  while (!start.empty()) {
-    const std::string_view line = start.substr(0, start.find('\n'));
-    if (!Trim(line).empty() && !line.starts_with("#")) {
-      return line.find(',') != line.npos &&
-             (line.find("theta_i") != line.npos || line.find("wi_x") != line.npos);
-    }
-    start.remove_prefix(std::min(line.size() + 1, start.size()));
-  }
-  return false;
+// A grid, and as many bytes as it asks for.
+bool LooksLikeMerl(const Content& file) {
+  std::array<std::int32_t, 3> grid;
+  if (file.start.size() < sizeof(grid)) return false;
+  std::memcpy(grid.data(), file.start.data(), sizeof(grid));
+  const double bins = double(grid[0]) * double(grid[1]) * double(grid[2]);
+  return *std::min_element(grid.begin(), grid.end()) > 0 &&
+         static_cast<double>(file.size) == sizeof(grid) + 3.0 * sizeof(double) * bins;
 }
 
-// A format of files: what its first bytes look like, and how the names of its files end.
+// A format of files: what it is called, what its first bytes look like, how the names of its files end.
 struct Format {
-  bool (*recognizes)(std::string_view start);
+  std::string_view name;
+  bool (*recognizes)(const Content& file);
   std::initializer_list<std::string_view> endings;
   std::unique_ptr<Brdf> (*open)(const std::string& path);
 };
 
-// Files are told by what they hold; where nothing recognises it, as in a damaged file, by their names. The
-// last format has no mark of its own: it is what all else is taken for.
+// Files are told by what they hold; where nothing recognises it, as in a damaged file, by their names.
 const Format kFormats[] = {
-    {LooksLikeSafetensors,
+    {"safetensors network",
+     LooksLikeSafetensors,
      {".safetensors"},
      [](const std::string& path) { return Boxed(NeuralBrdf::Read(path)); }},
-    {[](std::string_view start) {
-       return start.starts_with(kHdf5Magic) || start.starts_with(kNpyMagic);
-     },
+    {"Keras or NumPy network",
+     [](const Content& file) { return LooksLikeNbrdf(file.start); },
      {".h5", ".hdf5", ".npy"},
      [](const std::string& path) { return Boxed(ReadNbrdf(path)); }},
-    {LooksLikeModel,
+    {"analytic model",
+     LooksLikeModel,
      {".json"},
      [](const std::string& path) { return Boxed(AnalyticBrdf::Read(path)); }},
-    {[](std::string_view start) { return start.starts_with(TensorFile::kMagic); },
+    {"RGL file",
+     [](const Content& file) { return file.start.starts_with(TensorFile::kMagic); },
      {".bsdf"},
      [](const std::string& path) { return Boxed(RglBrdf::Read(path)); }},
-    {LooksLikeAlta,
+    {"ALTA measurements",
+     [](const Content& file) { return LooksLikeAlta(file.start); },
      {".alta", ".dat"},
      [](const std::string& path) { return Boxed(ReadAlta(path)); }},
-    {LooksLikeCsv, {".csv"}, [](const std::string& path) { return Boxed(ReadScatteredCsv(path)); }},
-    {[](std::string_view) { return false; },
+    {"Zemax measurements",
+     [](const Content& file) { return LooksLikeZemax(file.start); },
+     {},
+     [](const std::string& path) { return Boxed(ReadZemax(path)); }},
+    {"FRED measurements",
+     [](const Content& file) { return LooksLikeFred(file.start); },
+     {},
+     [](const std::string& path) { return Boxed(ReadFred(path)); }},
+    {"ASTM measurements",
+     [](const Content& file) { return LooksLikeAstm(file.start); },
+     {".astm"},
+     [](const std::string& path) { return Boxed(ReadAstm(path)); }},
+    {"Cornell measurements",
+     [](const Content& file) { return LooksLikeCornell(file.start); },
+     {".brdf"},
+     [](const std::string& path) { return Boxed(ReadCornell(path)); }},
+    {"in-plane measurements",
+     [](const Content& file) { return LooksLikeInPlane(file.start); },
+     {},
+     [](const std::string& path) { return Boxed(ReadInPlane(path)); }},
+    {"CSV measurements",
+     [](const Content& file) { return LooksLikeScatteredCsv(file.start); },
+     {".csv"},
+     [](const std::string& path) { return Boxed(ReadScatteredCsv(path)); }},
+    {"MERL table",
+     LooksLikeMerl,
      {".binary"},
      [](const std::string& path) { return Boxed(MerlBrdf::Read(path)); }},
 };
 
+[[noreturn]] void FailUnknown(const std::string& path) {
+  std::string names;
+  for (const Format& format : kFormats) names += StrCat(names.empty() ? "" : ", ", format.name);
+  Fail(path, ": not recognised; it is none of: ", names);
+}
+
 const Format& FormatOf(const std::string& path) {
-  const std::string start = ReadStart(path, kStart);
+  const std::string bytes = ReadStart(path, kStart);
+  const std::string_view start = bytes;
+  const std::size_t mark = start.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   for (const Format& format : kFormats) {
-    if (format.recognizes(start)) return format;
+    if (format.recognizes({start.substr(mark), FileSize(path)})) return format;
   }
+  const std::string name = LowerCase(path);
   for (const Format& format : kFormats) {
     for (std::string_view ending : format.endings) {
-      if (path.ends_with(ending)) return format;
+      if (name.ends_with(ending)) return format;
     }
   }
-  return kFormats[std::size(kFormats) - 1];
+  FailUnknown(path);
 }
 
 }  // namespace
@@ -111,7 +160,8 @@ std::unique_ptr<Brdf> OpenBrdf(const std::string& source) {
 }
 
 NeuralBrdf OpenNetwork(const std::string& path) {
-  return IsNbrdfFile(path) ? ReadNbrdf(path) : NeuralBrdf::Read(path);
+  const bool nbrdf = IsNbrdfFile(path) || LooksLikeNbrdf(ReadStart(path, kStart));
+  return nbrdf ? ReadNbrdf(path) : NeuralBrdf::Read(path);
 }
 
 }  // namespace pbnbrdf

@@ -10,11 +10,65 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+constexpr std::string_view kBlanks = " \t";
+constexpr std::string_view kMissing[] = {"", "nan", "-nan", "na", "n/a"};
+
+// Where the first cell of `line` ends; a separator between quotes ends none.
+std::size_t CellEnd(std::string_view line, std::string_view separators) {
+  std::size_t from = 0;
+  const std::size_t begin = line.find_first_not_of(kBlanks);
+  if (begin != line.npos && line[begin] == '"') {
+    const std::size_t end = line.find('"', begin + 1);
+    if (end != line.npos) from = end + 1;
+  }
+  return std::min(line.find_first_of(separators, from), line.size());
+}
+
+std::string_view WithoutQuotes(std::string_view cell) {
+  cell = Trim(cell);
+  const bool quoted = cell.size() >= 2 && cell.front() == cell.back() &&
+                      (cell.front() == '"' || cell.front() == '\'');
+  return quoted ? Trim(cell.substr(1, cell.size() - 2)) : cell;
+}
+
+void SplitCells(std::string_view line, char separator, std::vector<std::string_view>* cells) {
+  cells->clear();
+  const std::string_view separators = separator == ' ' ? kBlanks : std::string_view(&separator, 1);
+  while (true) {
+    const std::size_t end = CellEnd(line, separators);
+    cells->push_back(WithoutQuotes(line.substr(0, end)));
+    if (end == line.size()) return;
+    line.remove_prefix(end + 1);
+    if (separator == ' ') line = Trim(line);
+  }
+}
+
+std::string_view WithoutEnds(std::string_view text, std::string_view letters) {
+  const std::size_t begin = std::min(text.find_first_not_of(letters), text.size());
+  return text.substr(begin, text.find_last_not_of(letters) + 1 - begin);
+}
+
+char FindSeparator(std::string_view line) {
+  for (char separator : {';', ','}) {
+    if (line.find(separator) != line.npos) return separator;
+  }
+  std::vector<std::string_view> at_tabs;
+  SplitCells(line, '\t', &at_tabs);
+  const bool tabs = std::all_of(at_tabs.begin(), at_tabs.end(), [](std::string_view cell) {
+    return !cell.empty() && cell.find(' ') == cell.npos;
+  });
+  return tabs && at_tabs.size() > 1 ? '\t' : ' ';
+}
 
 }  // namespace
 
 TextTable::TextTable(std::string path, std::string text, Cells cells)
-    : path_(std::move(path)), text_(std::move(text)), cells_(cells) {}
+    : path_(std::move(path)), text_(std::move(text)), cells_(cells) {
+  if (LooksLikeUtf16(text_)) Fail(path_, ": UTF-16 text; save it as UTF-8");
+  if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  if (cells_ == Cells::kBlanks) separator_ = ' ';
+}
 
 TextTable TextTable::Read(const std::string& path, Cells cells) {
   return TextTable(path, ReadFile(path, kMaxFileSize), cells);
@@ -24,45 +78,36 @@ bool TextTable::Next() {
   while (at_ < text_.size()) {
     ++number_;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    if (end == text_.size() && requires_end_) {
-      Fail(Place(), ": the last line has no end; is the file truncated?");
-    }
-    line_ = Trim(std::string_view(text_).substr(at_, end - at_));
+    const std::string_view line = std::string_view(text_).substr(at_, end - at_);
     at_ = end + 1;
+    line_ = Trim(line);
     if (line_.empty()) continue;
-    SplitLine();
+    if (cells_ == Cells::kFound && names_.empty()) separator_ = FindSeparator(line_);
+    if (separator_ == '\t') line_ = WithoutEnds(line, " \r");
+    SplitCells(line_, separator_, &cells_of_line_);
     return true;
   }
   return false;
 }
 
-void TextTable::SplitLine() {
-  cells_of_line_.clear();
-  std::string_view rest = line_;
-  if (cells_ == Cells::kBlanks) {
-    for (; !rest.empty(); rest = Trim(rest)) {
-      const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-      cells_of_line_.push_back(rest.substr(0, end));
-      rest.remove_prefix(end);
-    }
-    return;
-  }
-  while (true) {
-    const std::size_t end = std::min(rest.find(','), rest.size());
-    cells_of_line_.push_back(Trim(rest.substr(0, end)));
-    if (end == rest.size()) return;
-    rest.remove_prefix(end + 1);
-  }
-}
-
 std::string TextTable::Place() const { return StrCat(path_, ": line ", number_); }
 
-void TextTable::NameColumns() { names_.assign(cells_of_line_.begin(), cells_of_line_.end()); }
+void TextTable::NameColumns() { NameColumns(IsComment() ? WithoutEnds(line_, "# \t") : line_); }
+
+void TextTable::NameColumns(std::string_view line) {
+  std::vector<std::string_view> names;
+  SplitCells(line, separator_, &names);
+  names_.assign(names.begin(), names.end());
+}
 
 std::optional<std::size_t> TextTable::FindColumn(std::string_view name) const {
-  const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names_.begin());
+  std::optional<std::size_t> found;
+  for (std::size_t column = 0; column < names_.size(); ++column) {
+    if (LowerCase(names_[column]) != name) continue;
+    if (found) Fail(path_, ": two columns have the name ", name);
+    found = column;
+  }
+  return found;
 }
 
 void TextTable::RequireCells(std::size_t count, std::string_view what) const {
@@ -70,9 +115,24 @@ void TextTable::RequireCells(std::size_t count, std::string_view what) const {
   Fail(Place(), ": ", cells_of_line_.size(), " ", what, ", expected ", count);
 }
 
+bool TextTable::IsMissing(std::size_t column) const {
+  const std::string cell = LowerCase(cells_of_line_[column]);
+  return std::find(std::begin(kMissing), std::end(kMissing), cell) != std::end(kMissing);
+}
+
 double TextTable::Number(std::size_t column) const {
   const std::string name = column < names_.size() ? names_[column] : StrCat("number ", column + 1);
-  return ParseNumber(StrCat(Place(), ", ", name), cells_of_line_[column]);
+  const std::string place = StrCat(Place(), ", ", name);
+  const std::string_view cell = cells_of_line_[column];
+  const std::size_t comma = cell.find(',');
+  if (comma != cell.npos && comma + 1 < cell.size()) {
+    Fail(place, ": '", cell, "' has a decimal comma; write a point");
+  }
+  return ParseNumber(place, cell);
+}
+
+bool LooksLikeUtf16(std::string_view start) {
+  return start.starts_with("\xff\xfe") || start.starts_with("\xfe\xff");
 }
 
 }  // namespace pbnbrdf

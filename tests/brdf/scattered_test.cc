@@ -140,13 +140,11 @@ TEST(Scattered, WhatCannotBeUsedIsLeftOutAndCounted) {
   ScatteredData data;
   data.kind = "test";
   data.left_out = 2;
-  data.samples = {{{up, up}, {1, 1, 1}},
-                  {{up, level}, {1, 1, 1}},
-                  {{down, up}, {1, 1, 1}},
-                  {{up, up}, {1, -1e-9, 1}},
-                  {{up, up}, {1e300, 0, 0}}};
+  data.samples = {
+      {{up, up}, {1, 1, 1}},       {{up, level}, {1, 1, 1}},         {{down, up}, {1, 1, 1}},
+      {{up, up}, {1, -0.9991, 1}}, {{up, up}, {1, std::nan(""), 1}}, {{up, up}, {1e300, 0, 0}}};
   const ScatteredBrdf brdf(data);
-  EXPECT_THAT(brdf.Description(), HasSubstr("RGB, 2 measurements, 5 unusable ones left out"));
+  EXPECT_THAT(brdf.Description(), HasSubstr("RGB, 2 measurements, 6 unusable ones left out"));
   EXPECT_EQ(ValueAt(brdf, {up, up})[0], 0.5 * (1.0 + Brdf::kLargestValue));
   data.samples = {{{up, level}, {1, 1, 1}}};
   EXPECT_THAT(ErrorOf([&] { ScatteredBrdf{data}; }),

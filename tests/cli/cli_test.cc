@@ -396,6 +396,23 @@ TEST_F(Cli, EvalTakesVectorsFromStandardInput) {
   EXPECT_THAT(result.out, HasSubstr("0,0,2,1,0,1," + FormatFullPrecision(0.99 / kPi)));
 }
 
+TEST_F(Cli, EvalTakesTheDialectsOfText) {
+  const std::string f = FormatFullPrecision(0.99 / kPi);
+  const auto values = [&](const std::string& csv) {
+    WriteBytes(Path("pairs.csv"), csv);
+    return Run("eval --material=builtin:spectralon --out=- --directions=" + Path("pairs.csv"));
+  };
+  EXPECT_EQ(values("\xef\xbb\xbfTheta_I_deg;phi_i;theta_o;phi_o\r\n# why\r\n30;0;-0.5;1").out,
+            StrCat("Theta_I_deg;phi_i;theta_o;phi_o;r;g;b\n30;0;-0.5;1;", f, ";", f, ";", f, "\n"));
+  EXPECT_EQ(values("# theta_i phi_i theta_o phi_o\n0 0 0.5 1\n").out,
+            StrCat("# theta_i phi_i theta_o phi_o r g b\n0 0 0.5 1 ", f, " ", f, " ", f, "\n"));
+  const Result tabs =
+      values("theta_i\tphi_i\ttheta_o\tphi_o\tnote\n0\t0\t0\t0\t\n0\tnan\t0\t0\tx\n");
+  EXPECT_EQ(tabs.out, StrCat("theta_i\tphi_i\ttheta_o\tphi_o\tnote\tr\tg\tb\n0\t0\t0\t0\t\t", f,
+                             "\t", f, "\t", f, "\n"));
+  EXPECT_EQ(tabs.err, "pbnbrdf: 1 rows that lack a direction are left out\n");
+}
+
 TEST_F(Cli, BadDirectionsAreNamed) {
   const auto values = [&](const std::string& csv, const std::string& message) {
     WriteBytes(Path("pairs.csv"), csv);
@@ -409,6 +426,14 @@ TEST_F(Cli, BadDirectionsAreNamed) {
   values("theta_i,phi_i,theta_o,phi_o\n1,2,3,4\n\n1,2,x,4\n",
          "line 4, theta_o: 'x' is not a finite");
   values("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,0,0,0,1\n", "line 2: a direction has no length");
+  values("theta_i,phi_i,theta_o,phi_o\n45,0,30,180\n",
+         "line 2: theta_i is 45 radians; must be -3.14159 to 3.14159 (theta_i is in radians, "
+         "theta_i_deg");
+  values("theta_i,phi_i,theta_o,phi_o,R,g,b\n0,0,0,0,1,1,1\n",
+         "line 1: there is a column r already; r,g,b are what is appended");
+  values("theta_i,phi_i,theta_o,phi_o,phi_o\n", "two columns have the name phi_o");
+  values("theta_i;phi_i;theta_o;phi_o\n0,1;0;0;0\n", "theta_i: '0,1' has a decimal comma");
+  values(std::string("\xff\xfet\0", 4), "pairs.csv: UTF-16 text");
 }
 
 TEST_F(Cli, ShippedProblemsFit) {

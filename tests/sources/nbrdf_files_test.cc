@@ -182,9 +182,9 @@ TEST(NbrdfFiles, NetworksThatDontFitTogetherAreNamed) {
   };
   EXPECT_EQ(keras([](auto&) {}), "");
   EXPECT_THAT(keras([](auto& a) { a.erase("b2"); }),
-              HasSubstr("x.h5: dataset /dense_2/dense_2/bias:0 is missing; expected Keras layers"));
+              HasSubstr("x.h5: dataset /dense_2/dense_2/bias:0 is missing; expected dense layers"));
   EXPECT_THAT(keras([](auto& a) { a.erase("fc1"), a.erase("b1"); }),
-              HasSubstr("x.h5: dataset /dense_1 is missing"));
+              HasSubstr("/dense_2/dense_2/kernel:0: shape 4 x 5, expected 6 x units"));
   EXPECT_THAT(
       keras([](auto& a) { a.erase("fc3"), a.erase("b3"); }),
       HasSubstr("/dense_2/dense_2/kernel:0: shape 4 x 5, expected 4 x 3, the last layer's"));
@@ -210,6 +210,74 @@ TEST(NbrdfFiles, NetworksThatDontFitTogetherAreNamed) {
               HasSubstr("a_b3.npy: no such file"));
   EXPECT_THAT(ErrorOf([&] { OpenBrdf(folder / "a_fc2.npy"); }),
               HasSubstr("a_fc2.npy: name the first layer's file, ...fc1.npy"));
+}
+
+// A network's layers as groups of other names; names holds those of the groups, in order.
+void WriteLayers(const std::string& path, const Arrays& arrays, const std::string& parent,
+                 const std::vector<std::string>& names, const std::string& kernel,
+                 const std::string& bias, bool listed) {
+  H5Writer file(path);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    file.Add(parent + names[k] + kernel, arrays.at(StrCat("fc", k + 1)));
+    file.Add(parent + names[k] + bias, arrays.at(StrCat("b", k + 1)));
+  }
+  if (!listed) return;
+  constexpr std::size_t kLength = 16;
+  std::string texts;
+  for (std::string name : names) {
+    name.resize(kLength);
+    texts += name;
+  }
+  const hid_t type = H5Tcopy(H5T_C_S1), group = H5Gopen2(file.file(), parent.c_str(), H5P_DEFAULT);
+  H5Tset_size(type, kLength);
+  const hsize_t count = names.size();
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t attribute = H5Acreate2(group, "layer_names", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, texts.data());
+  H5Aclose(attribute), H5Sclose(space), H5Gclose(group), H5Tclose(type);
+}
+
+TEST(NbrdfFiles, LayersAreFoundWhateverTheirNames) {
+  TemporaryFolder folder;
+  const std::string path = folder / "x.h5";
+  const Arrays arrays = RandomArrays({6, 4, 4, 3}, /*seed=*/7);
+  WriteKeras(path, arrays);
+  const std::vector<double> wanted = ReadNbrdf(path).weights();
+  using Names = std::vector<std::string>;
+  const auto read = [&](const std::string& parent, const Names& names, const std::string& kernel,
+                        const std::string& bias, bool listed) {
+    WriteLayers(path, arrays, parent, names, kernel, bias, listed);
+    return ReadNbrdf(path).weights();
+  };
+  const Names numbers = {"dense_9", "dense_10", "dense_11"},
+              first = {"dense", "dense_1", "dense_2"};
+  EXPECT_EQ(read("/", numbers, "/a/kernel:0", "/a/bias:0", false), wanted);
+  EXPECT_EQ(read("/model_weights/", first, "/dense/kernel:0", "/dense/bias:0", false), wanted);
+  EXPECT_EQ(read("/model_weights/", first, "/m/dense/kernel", "/m/dense/bias", true), wanted);
+  EXPECT_EQ(read("/layers/", first, "/vars/0", "/vars/1", false), wanted);
+  const Names words = {"one", "two", "three"};
+  EXPECT_EQ(read("/", words, "/one/kernel:0", "/one/bias:0", true), wanted);
+  EXPECT_THAT(ErrorOf([&] { read("/", words, "/one/kernel:0", "/one/bias:0", false); }),
+              HasSubstr("x.h5: layers one and three, and no list of fixed-length names"));
+  // By content, under another name.
+  read("/", words, "/one/kernel:0", "/one/bias:0", true);
+  std::filesystem::rename(path, folder / "weights");
+  EXPECT_EQ(OpenNetwork(folder / "weights").weights(), wanted);
+}
+
+TEST(NbrdfFiles, FilesOfEveryKerasHoldTheSameNetwork) {
+  PBNBRDF_REFERENCE_FILE(folder, "faults/keras");
+  const DirectionPair pair = {FromSpherical(0.6, 0.0), FromSpherical(0.5, 2.5)};
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".h5") continue;
+    Rgb value;
+    OpenBrdf(entry.path())->Evaluate({&pair, 1}, {&value, 1});
+    EXPECT_NEAR(value[0], 0.07152, 5e-6) << entry.path();
+    EXPECT_EQ(value[1] + value[2], 0.0);
+    ++files;
+  }
+  EXPECT_EQ(files, 7);
 }
 
 TEST(NbrdfFiles, UnusableHdf5FilesAreNamedAndNothingIsPrinted) {
@@ -256,7 +324,7 @@ TEST(NbrdfFiles, DataElsewhereOrInChunksIsRefused) {
     H5Lcreate_external(other.c_str(), "/dense_1", file.file(), "/dense_1", file.links(),
                        H5P_DEFAULT);
   }
-  EXPECT_THAT(ErrorOf([&] { OpenBrdf(path); }), HasSubstr("dataset /dense_1 is missing"));
+  EXPECT_THAT(ErrorOf([&] { OpenBrdf(path); }), HasSubstr("x.h5: expected dense layers of Keras"));
 }
 
 // HDF5 1.10 would allocate memory until there is none.
@@ -277,11 +345,8 @@ TEST(NbrdfFiles, AHeapThatRunsInACircleIsRefused) {
 }
 
 // HDF5 reads whatever a file claims; damage ends in an Error, or in weights that are other numbers.
-TEST(NbrdfFiles, DamagedHdf5FilesGiveAnErrorOrANetwork) {
-  TemporaryFolder folder;
+void ExpectErrorOrNetwork(const TemporaryFolder& folder, const std::string& good) {
   const std::string path = folder / "x.h5";
-  WriteKeras(path, RandomArrays({6, 3, 3}, /*seed=*/5));
-  const std::string good = FileBytes(path);
   testing::internal::CaptureStderr();
   const auto error = [&](const std::string& bytes) {
     std::filesystem::remove(path);  // some file systems wait for the disk when one is overwritten
@@ -305,6 +370,20 @@ TEST(NbrdfFiles, DamagedHdf5FilesGiveAnErrorOrANetwork) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_GT(refused, 100);
   EXPECT_EQ(error(good), "");
+}
+
+TEST(NbrdfFiles, DamagedHdf5FilesGiveAnErrorOrANetwork) {
+  TemporaryFolder folder;
+  const std::string path = folder / "x.h5";
+  WriteKeras(path, RandomArrays({6, 3, 3}, /*seed=*/5));
+  ExpectErrorOrNetwork(folder, FileBytes(path));
+}
+
+TEST(NbrdfFiles, DamagedKerasFilesGiveAnErrorOrANetwork) {
+  TemporaryFolder folder;
+  const std::string path = folder / "x.h5";
+  WriteKeras(path, RandomArrays({6, 3, 3}, /*seed=*/5));
+  ExpectErrorOrNetwork(folder, NbrdfFiles(ReadNbrdf(path), path)[0].content);  // with attributes
 }
 
 // Unpacks an archive of published networks; false if there is no unzip.

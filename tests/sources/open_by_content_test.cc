@@ -42,6 +42,21 @@ TEST_F(OpenByContent, WhateverTheName) {
   }
 }
 
+TEST_F(OpenByContent, WhatIsNotRecognisedIsSaidToBeSo) {
+  const auto error = [&](const std::string& name, const std::string& content) {
+    return ErrorOf([&] { Opened(name, content); });
+  };
+  for (const std::string& content : std::vector<std::string>{
+           "", "some prose, theta\n", std::string(100, '\xff'), "\x89PNG\r\n", "1 2 3\n4 5 6\n"}) {
+    EXPECT_THAT(error("a.txt", content),
+                HasSubstr("a.txt: not recognised; it is none of: safetensors"));
+  }
+  EXPECT_THAT(error("a", "x"), HasSubstr("Cornell measurements, in-plane measurements, CSV"));
+  // Not by a name without its dot, and by one in capitals.
+  EXPECT_THAT(error("binary", "x"), HasSubstr("not recognised"));
+  EXPECT_THAT(error("A.BINARY", std::string(100, '\0')), HasSubstr("not a MERL file: its header"));
+}
+
 TEST_F(OpenByContent, ADamagedFileIsReportedAsWhatItsNameSays) {
   EXPECT_THAT(ErrorOf([&] { Opened("a.csv", "nonsense\n"); }), HasSubstr("must name the columns"));
   EXPECT_THAT(ErrorOf([&] { Opened("a.json", "nonsense\n"); }), HasSubstr("not a JSON file"));

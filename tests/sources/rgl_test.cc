@@ -238,6 +238,31 @@ TEST(Rgl, BadFilesAreNamed) {
   EXPECT_THAT(read(ConstantFile(1, grey).Remove("luminance")), HasSubstr("no field 'luminance'"));
 }
 
+// One part in a million of the largest, as in published files.
+TEST(Rgl, NegativeRoundingIsZero) {
+  TemporaryFolder folder;
+  const std::string path = folder / "m.bsdf";
+  const auto opened = [&](float negative) {
+    TensorWriter file = ConstantFile(1, {1, 1, 1});
+    WriteBytes(path, file.Replace("ndf", {2, 2}, {1.0f, negative, 1.0f, 2.0f}).Bytes());
+    return OpenBrdf(path)->IsKnown({{0, 0, 1}, {0, 0, 1}});
+  };
+  EXPECT_TRUE(opened(-1.9e-6f));
+  EXPECT_THAT(ErrorOf([&] { opened(-2.1e-6f); }),
+              HasSubstr("of field 'ndf' is -2.1e-06; must be >= 0"));
+}
+
+TEST(Rgl, EveryMeasuredFileIsRead) {
+  PBNBRDF_REFERENCE_FILE(folder, "measured/rgl");
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    EXPECT_THAT(OpenBrdf(entry.path())->Description(),
+                HasSubstr("RGL measurement, isotropic, RGB"));
+    ++files;
+  }
+  EXPECT_EQ(files, 13);
+}
+
 TEST(Rgl, TheCorruptFilesAreRefused) {
   PBNBRDF_REFERENCE_FILE(folder, "rgl/corrupt");
   const auto error = [&](const std::string& name) {

@@ -1,43 +1,13 @@
 #include "pbnbrdf/sources/scattered_files.h"
 
-#include <fstream>
-#include <iterator>
-
 #include "brdf/direction_pairs.h"
-#include "pbnbrdf/sources/open_brdf.h"
+#include "sources/scattered_fixture.h"
 
 namespace pbnbrdf {
 namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-
-std::string FileText(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-class ScatteredFiles : public testing::Test {
- protected:
-  std::vector<BrdfSample> Samples(const std::string& name, const std::string& text) const {
-    return Open(name, text)->Measurements();
-  }
-  std::unique_ptr<Brdf> Open(const std::string& name, const std::string& text) const {
-    WriteBytes(folder_ / name, text);
-    return OpenBrdf(folder_ / name);
-  }
-  std::string ErrorOfOpening(const std::string& name, const std::string& text) const {
-    return ErrorOf([&] { Open(name, text); });
-  }
-
-  TemporaryFolder folder_;
-};
-
-void ExpectNear(const Vec3& a, const Vec3& b) {
-  EXPECT_NEAR(a.x, b.x, 1e-12);
-  EXPECT_NEAR(a.y, b.y, 1e-12);
-  EXPECT_NEAR(a.z, b.z, 1e-12);
-}
 
 std::string Alta(const std::string& dim, const std::string& in, const std::string& out,
                  const std::string& rows) {
@@ -144,8 +114,7 @@ TEST_F(ScatteredFiles, BadAltaFilesAreNamed) {
               HasSubstr("line 3: 15 isn't an angle in radians"));
   EXPECT_THAT(error(Alta("6 1", "CARTESIAN", "", "0 0 0 0 0 1 1\n")),
               HasSubstr("line 3: a direction has no length"));
-  EXPECT_THAT(error(Alta("3 1", in, "", "0.1 0.2 0.3 4")),
-              HasSubstr("line 3: the last line has no end"));
+  EXPECT_EQ(error(Alta("3 1", in, "", kTwoRows + "0.1 0.2 0.3 4")), "");
   EXPECT_THAT(error(Alta("3 1", in, "", "0.1 0.2 0.3 -4\n0.1 1.6 0 4\n")),
               HasSubstr("a.alta: no data: of 2 measurements none has both directions above"));
 }
@@ -196,33 +165,27 @@ TEST_F(ScatteredFiles, BadCsvFilesAreNamed) {
               HasSubstr("a.csv: line 3, value: 'inf' is not a finite number"));
   EXPECT_THAT(
       error(header + "30,0,0.4,1,5\n"),
-      HasSubstr("a.csv: line 2, theta_i: 30 is 30 radians; must be 0 to 3.14159 (theta_i is "
-                "in radians, theta_i_deg in degrees)"));
-  EXPECT_THAT(error(header + "-0.3,0,0.4,1,5\n"), HasSubstr("theta_i: -0.3 is -0.3 radians"));
-  EXPECT_THAT(error(header + "0.3,0,0.4,90,5\n"), HasSubstr("phi_o: 90 is 90 radians"));
+      HasSubstr("a.csv: line 2: theta_i is 30 radians; must be -3.14159 to 3.14159 (theta_i is "
+                "in radians, theta_i_deg in degrees"));
+  EXPECT_THAT(error(header + "0.3,0,0.4,90,5\n"), HasSubstr("phi_o is 90 radians"));
   EXPECT_THAT(error("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value\n0,0,0,0,0,1,1\n"),
               HasSubstr("line 2: a direction has no length"));
   EXPECT_THAT(error(header), HasSubstr("a.csv: no data: of 0 measurements none"));
-  EXPECT_THAT(error(header + row + "0.3,0,0.4,1,5"), HasSubstr("line 3: the last line has no end"));
 }
 
-// At every 1/20 of the length, unless the cut is just behind a line: then it is a shorter file.
-TEST_F(ScatteredFiles, TruncationsAreRefused) {
+// Wherever the cut is, but in a line's last number or behind it: then it is a file, too.
+TEST_F(ScatteredFiles, RowsThatAreCutOffAreRefused) {
   std::string alta = Alta("3 1", "ISOTROPIC_TL_TV_PROJ_DPHI", "", ""),
               csv = "theta_i,phi_i,theta_o,phi_o,value\n";
-  for (int n = 0; n < 50; ++n) {
+  for (int n = 10; n < 50; ++n) {
     alta += StrCat(0.01 * n, " 0.25 0.125 3.5\n");
     csv += StrCat(0.01 * n, ",0,0.25,0.125,3.5\n");
   }
   for (const auto& [name, text] : {std::pair("a.alta", alta), std::pair("a.csv", csv)}) {
-    int refused = 0;
-    for (std::size_t k = 0; k < 20; ++k) {
-      const std::string cut = text.substr(0, text.size() * k / 20);
-      if (cut.ends_with('\n')) continue;
-      EXPECT_THAT(ErrorOfOpening(name, cut), StartsWith(folder_ / name + ": ")) << k;
-      ++refused;
+    for (std::size_t end = text.size() - 1; end > 100; end = text.rfind('\n', end - 1)) {
+      const std::string cut = text.substr(0, end - 4);  // ".5" and what parts it from its neighbour
+      EXPECT_THAT(ErrorOfOpening(name, cut), StartsWith(folder_ / name + ": ")) << end;
     }
-    EXPECT_GT(refused, 15);
   }
 }
 
@@ -256,14 +219,157 @@ TEST_F(ScatteredFiles, AOneDimensionalFileIsRead) {
   EXPECT_EQ(brdf->Measurements()[0].value[1], 0.0794405192136765);
 }
 
-TEST_F(ScatteredFiles, TruncationsOfMeasuredFilesAreRefused) {
-  for (const char* name : {"retro-3M-jaune.dat", "pink-felt-1d.alta"}) {
-    PBNBRDF_REFERENCE_FILE(path, std::string("alta/") + name);
-    const std::string text = FileText(path);
-    for (std::size_t k = 0; k < 20; ++k) {
-      const std::string cut = text.substr(0, text.size() * k / 20);
-      EXPECT_THAT(ErrorOfOpening(name, cut), StartsWith(folder_ / name + ": ")) << name << " " << k;
+std::string Row(double f) { return StrCat("0.3,0,0.4,2,", f, "\n"); }
+
+TEST_F(ScatteredFiles, DialectsOfTextAreOneTable) {
+  const std::string text = "theta_i,phi_i,theta_o,phi_o,value\n0.3,0,0.4,2,5\n0.2,0,0.1,1,-0.5\n";
+  const auto with = [&](char separator, std::string part, const std::string& by) {
+    std::string changed;
+    for (char c : text) changed += c == separator ? by : std::string(1, c);
+    return part + changed;
+  };
+  const auto wanted = Samples("a.csv", text);
+  const std::string names = "\"theta_i\", 'Phi_I' ,THETA_o,\tphi_o ,\"Value\"\n";
+  const std::string rows = text.substr(text.find('\n') + 1);
+  for (const std::string& dialect :
+       {with('\n', "", "\r\n"), with(',', "", ";"), with(',', "", "\t"), with(',', "", "  "),
+        with(',', "", "\t \t"), with(',', "", ", "), with('x', "\xef\xbb\xbf", ""),
+        text.substr(0, text.size() - 1), names + rows,
+        "# theta_i,phi_i,theta_o,phi_o,value\n" + rows,
+        "# a, b\n\n" + with('\n', "", "\n# theta_i, again\n"),
+        text + "nan,0,0.3,1,5\n0.3,0,0.3,1,\n0.3,NA,0.3,1,1\n"}) {
+    for (const char* name : {"a.csv", "a.CSV", "a.txt", "a"}) {
+      const auto found = Samples(name, dialect);
+      ASSERT_EQ(found.size(), wanted.size()) << dialect;
+      for (std::size_t n = 0; n < found.size(); ++n) {
+        ExpectNear(found[n].pair.wo, wanted[n].pair.wo);
+        EXPECT_EQ(found[n].value, wanted[n].value) << dialect;
+      }
     }
+  }
+  EXPECT_THAT(Open("a.csv", text + "0.3,0,0.3,1,\n")->Description(),
+              HasSubstr("2 measurements, 1 unusable ones left out"));
+  // An empty cell between tabs, and at a line's end.
+  EXPECT_THAT(
+      Open("a.csv", with(',', "", "\t") + "0.3\t\t0.3\t1\t5\n0.3\t0\t0.3\t1\t\n")->Description(),
+      HasSubstr("2 measurements, 2 unusable ones left out"));
+}
+
+TEST_F(ScatteredFiles, WhatMakesATextUnreadableIsNamed) {
+  const std::string header = "theta_i;phi_i;theta_o;phi_o;value\n";
+  EXPECT_THAT(ErrorOfOpening("a.csv", header + "0,3;0;0,4;2;0,5\n"),
+              HasSubstr("a.csv: line 2, theta_i: '0,3' has a decimal comma; write a point"));
+  EXPECT_THAT(ErrorOfOpening("a.csv", std::string("\xff\xfet\0h\0", 6)),
+              HasSubstr("a.csv: UTF-16 text; save it as UTF-8"));
+  EXPECT_THAT(ErrorOfOpening("a.txt", std::string("\xfe\xff\0t\0h", 6)), HasSubstr("UTF-16 text"));
+  EXPECT_THAT(ErrorOfOpening("a.csv", "theta_i,phi_i,theta_o,phi_o,value,Value\n0,0,0,0,1,1\n"),
+              HasSubstr("a.csv: two columns have the name value"));
+  EXPECT_THAT(ErrorOfOpening("a.csv", "theta_i,phi_i,theta_o,phi_o,value,sigma\n0,0,0,0,1,-1\n"),
+              HasSubstr("line 2, sigma: -1; must be >= 0"));
+}
+
+TEST_F(ScatteredFiles, ANegativeThetaIsOnTheOtherSide) {
+  const auto samples =
+      Samples("a.csv", "theta_i,phi_i,theta_o_deg,phi_o,value\n-0.3,1,-30,2,5\n0.3,1,30,2,5\n");
+  ExpectNear(samples[0].pair.wi, FromSpherical(0.3, 1 + kPi));
+  ExpectNear(samples[0].pair.wo, FromSpherical(kPi / 6, 2 + kPi));
+}
+
+TEST_F(ScatteredFiles, ASampleThatWasTurnedByHalfACircleIsOneMaterial) {
+  const std::string header = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n";
+  EXPECT_TRUE(
+      Open("a.csv", header + "30,0,40,180,1\n30,180,50,0,1\n-30,0,20,0,1\n")->IsIsotropic());
+  EXPECT_FALSE(Open("a.csv", header + "30,0,40,180,1\n30,179,50,0,1\n")->IsIsotropic());
+}
+
+// The weights written out: s = sigma cos_i / (1 + f cos_i), (median / s)^2, from 1e-4 to 1.
+TEST_F(ScatteredFiles, DeviationsBecomeWeights) {
+  const std::string columns = "theta_i,phi_i,theta_o,phi_o,value,sigma\n";
+  const auto weights = [&](const std::string& text) {
+    std::vector<double> found;
+    for (const BrdfSample& s : Samples("a.csv", text)) found.push_back(s.weight);
+    return found;
+  };
+  const double c = std::cos(0.5);
+  const double s[] = {0.1 / (1 + 2), 0.2 * c / (1 + 4 * c), 0.4 * c, 100.0};
+  const double median = 0.5 * (s[1] + s[2]);
+  const auto found =
+      weights(columns + "0,0,0,0,2,0.1\n0.5,0,0,0,4,0.2\n0.5,0,0,0,0,0.4\n0,0,0,0,0,100\n");
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_LT(s[1], median);
+  EXPECT_EQ(found[0], 1.0);
+  EXPECT_EQ(found[1], 1.0);
+  EXPECT_NEAR(found[2], median * median / (s[2] * s[2]), 1e-15);
+  EXPECT_EQ(found[3], 1e-4);
+  // Of three channels: as their mean.
+  const std::string three = "theta_i,phi_i,theta_o,phi_o,r,g,b,sigma_r,sigma_g,sigma_b\n";
+  const auto means = weights(three + "0,0,0,0,1,2,3,0.05,0.1,0.15\n0.5,0,0,0,3,4,5,0.1,0.2,0.3\n" +
+                             "0.5,0,0,0,0,0,0,0.4,0.4,0.4\n0,0,0,0,0,0,0,100,100,100\n");
+  EXPECT_THAT(means, testing::Pointwise(testing::DoubleNear(1e-15), found));
+  // All known exactly, all alike, and not said.
+  EXPECT_EQ(weights(columns + "0,0,0,0,2,0\n0.1,0,0,0,2,0\n"), (std::vector<double>{1, 1}));
+  EXPECT_EQ(weights(columns.substr(0, columns.rfind(',')) + "\n" + Row(1) + Row(2)),
+            (std::vector<double>{1, 1}));
+}
+
+// Properties over random rows: weights within their range, falling with sigma, and the same in any unit of sigma.
+TEST_F(ScatteredFiles, WeightsFallWithSigma) {
+  const std::vector<double> sigmas = RandomNumbers(200, 0.0, 1.0, 3);
+  const auto weights = [&](double unit) {
+    std::string text = "theta_i,phi_i,theta_o,phi_o,value,sigma\n";
+    for (double sigma : sigmas) text += StrCat("0.3,0,0.4,2,5,", FormatNumber(unit * sigma), "\n");
+    return Samples("a.csv", text);
+  };
+  const auto one = weights(1.0), eight = weights(8.0);
+  for (std::size_t n = 0; n < sigmas.size(); ++n) {
+    EXPECT_EQ(one[n].weight, eight[n].weight);
+    EXPECT_GT(one[n].weight, 0.0);
+    EXPECT_LE(one[n].weight, 1.0);
+    for (std::size_t m = 0; m < n; ++m) {
+      EXPECT_TRUE(sigmas[n] >= sigmas[m] || one[n].weight >= one[m].weight);
+    }
+  }
+}
+
+// Whatever their dialect they hold the same, or are refused for a reason.
+TEST_F(ScatteredFiles, FilesOfOtherProgramsAreRead) {
+  PBNBRDF_REFERENCE_FILE(folder, "faults/material_csv");
+  const DirectionPair pair = {FromSpherical(0.6, 0.0), FromSpherical(0.5, 3.0)};
+  for (const char* name :
+       {"bom.csv", "empty_cell.csv", "nan.csv", "no_newline.csv", "plain.CSV", "plain.csv",
+        "plain.txt", "quoted_header.csv", "semicolon.csv", "tab.csv"}) {
+    const auto brdf = OpenBrdf(folder + "/" + name);
+    Rgb value;
+    brdf->Evaluate({&pair, 1}, {&value, 1});
+    EXPECT_NEAR(value[0], 0.5223, 5e-5) << name;
+    EXPECT_TRUE(brdf->IsIsotropic());
+  }
+  const auto error = [&](const std::string& name) {
+    return ErrorOf([&] { OpenBrdf(folder + "/" + name); });
+  };
+  EXPECT_THAT(error("dup_columns.csv"), HasSubstr("two columns have the name value"));
+  EXPECT_THAT(error("semicolon_decimal_comma.csv"), HasSubstr("has a decimal comma"));
+  EXPECT_THAT(error("utf16.csv"), HasSubstr("UTF-16"));
+  const auto in_plane = OpenBrdf(folder + "/deg_signed.csv"),
+             plain = OpenBrdf(folder + "/plain.csv");
+  EXPECT_TRUE(in_plane->IsIsotropic());
+  for (const BrdfSample& sample : in_plane->Measurements()) {
+    Rgb value;
+    plain->Evaluate({&sample.pair, 1}, {&value, 1});
+    EXPECT_NEAR(value[0], sample.value[0], 1e-9);
+  }
+}
+
+TEST_F(ScatteredFiles, NoisyAndTurnedScansKeepAllTheirRows) {
+  PBNBRDF_REFERENCE_FILE(folder, "faults/scattered");
+  const std::pair<const char*, std::size_t> kRows[] = {
+      {"inplane.csv", 644},          {"inplane_noise.csv", 644}, {"inplane_turned.csv", 644},
+      {"random100_noise.csv", 100},  {"random3000.csv", 3000},   {"random3000_additive.csv", 3000},
+      {"random3000_noise.csv", 3000}};
+  for (const auto& [name, rows] : kRows) {
+    const auto brdf = OpenBrdf(folder + "/" + name);
+    EXPECT_EQ(brdf->Measurements().size(), rows) << name;
+    EXPECT_TRUE(brdf->IsIsotropic()) << name;
   }
 }
 

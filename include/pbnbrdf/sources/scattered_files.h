@@ -16,16 +16,17 @@
 // 2, that say how sure the first value is, which aren't used. Further lines with # are comments. Then
 // follows a row of numbers for each measurement.
 //
-// The first line of a CSV names its columns: theta_i, phi_i, theta_o, phi_o in radians, or
-// theta_i_deg, ... in degrees, each by itself; or wi_x, wi_y, wi_z, wo_x, wo_y, wo_z, of any length
-// but 0; and value, or r, g, b: f in 1/sr, without the cosine. Other columns are ignored, and so are
-// empty lines and those that begin with #.
+// The first line of a CSV names its columns, in letters of either case: theta_i, phi_i, theta_o, phi_o in
+// radians, or theta_i_deg, ... in degrees, each by itself, where a negative theta is on the other side of the
+// normal; or wi_x, wi_y, wi_z, wo_x, wo_y, wo_z, of any length but 0; and value, or r, g, b: f in 1/sr, without
+// the cosine. sigma, or sigma_r, sigma_g, sigma_b, is the standard deviation of f and gives the measurements
+// their weights (src/sources/sample_weights.h). Other columns are ignored, and so are empty lines and those that
+// begin with #, but for one that names the columns. Columns are parted by ';', ',', a tab or blanks. Rows where a
+// number is missing (an empty cell, nan, NA) are left out and counted.
 //
-// An isotropic material needs one phi_i only: where all measurements have the same (and with the
-// coordinates of ALTA that have no phi_h), the material is taken as isotropic, else as anisotropic. A
+// An isotropic material needs one phi_i only: where all measurements have the same, or the opposite one (and
+// with the coordinates of ALTA that have no phi_h), the material is taken as isotropic, else as anisotropic. A
 // line "# isotropic" or "# anisotropic" says otherwise.
-//
-// In both, the last line must end like all others, so that a file that was cut off is found.
 //
 // [1] L. Belcour, P. Barla, R. Pacanowski. ALTA: A BRDF Analysis Library. Workshop on Material
 //     Appearance Modeling, 2014.
@@ -42,7 +43,9 @@ namespace pbnbrdf {
 ScatteredBrdf ReadAlta(const std::string& path);
 ScatteredBrdf ReadScatteredCsv(const std::string& path);
 
-// Whether a text that begins so is an ALTA file.
+// Whether a text that begins so is an ALTA file; a CSV: what the first line that isn't a comment says, or a comment
+// before it, is about columns of directions, or the text is UTF-16, which ReadScatteredCsv refuses.
 bool LooksLikeAlta(std::string_view start);
+bool LooksLikeScatteredCsv(std::string_view start);
 
 }  // namespace pbnbrdf
