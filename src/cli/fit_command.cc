@@ -57,6 +57,9 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
   return network.weights();
 }
 
+// What measuring may take beyond --max_seconds: seconds, or a part of them.
+constexpr double kMinMeasuring = 0.4, kMeasuringPart = 0.1;
+
 std::string ProgressText(const FitProgress& progress) {
   return StrCat("iteration ", progress.iteration, "  cost ", progress.cost, "  held-out error ",
                 progress.heldout_error, "  ", SecondsText(progress.seconds));
@@ -87,8 +90,9 @@ Fit FitNetwork(const FitCommandOptions& options, const Brdf& material, std::stri
 std::string EnergyText(const EnergySummary& energy) {
   if (energy.rounds == 0 && energy.correction == 0.0) return "";
   return StrCat("energy term: largest albedo ", energy.first_max_albedo, " without it; ",
-                energy.rounds, " rounds with it; log(1 + f) then lowered by ", energy.correction,
-                "\n");
+                energy.rounds,
+                " rounds with it; what was left took a mean change of log(1 + f) of ",
+                energy.correction, "\n");
 }
 
 void PrintFit(const std::string& out, const Brdf& material, const Fit& fit,
@@ -116,9 +120,11 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
   CatchInterrupt();
   const std::unique_ptr<Brdf> material = options.material.Open();
   std::string trace = "iteration,seconds,cost,heldout_error\n";
+  const double max_seconds = options.setup.options.schedule.max_seconds;
   const Fit fit = FitNetwork(options, *material, &trace);
   const nlohmann::ordered_json measures =
-      MeasureFit(*material, fit.network, fit.network.weights().size());
+      MeasureFit(*material, fit.network, fit.network.weights().size(),
+                 {.seconds = std::max(kMinMeasuring, kMeasuringPart * max_seconds)});
 
   FitCommandOptions copy = options;
   const FitSubject subject = {

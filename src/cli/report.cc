@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include <chrono>
+#include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -17,6 +19,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 // Of incidence, for the albedo of a material: nearer to the horizon measurements have no data, and models
 // are wrong.
 constexpr double kMaxMaterialAngle = 85.0 * kDegree;
+constexpr std::size_t kTrialSamples = 2000;
+constexpr double kAlbedoValues = 1e6;  // about what the albedos of a material take
 
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
@@ -26,6 +30,24 @@ std::string EnergyVerdict(const Energy& energy) {
   text << std::setprecision(4) << "albedo 1 + " << energy.max_directional_albedo - 1.0 << " at "
        << energy.theta_i / kDegree << " degrees, " << kChannels[energy.channel];
   return text.str();
+}
+
+// What there is time for.
+struct Allowance {
+  std::size_t samples;
+  bool material_albedo;
+};
+
+Allowance AllowanceFor(const Brdf& material, const MeasureOptions& options) {
+  if (std::isinf(options.seconds)) return {options.samples, true};
+  const auto start = std::chrono::steady_clock::now();
+  HeldOutSamples(material, kTrialSamples, options.seed);
+  const double per_sample =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
+      kTrialSamples;
+  const double affordable = std::max(0.25 * options.seconds / per_sample, double(kTrialSamples));
+  return {static_cast<std::size_t>(std::min(affordable, static_cast<double>(options.samples))),
+          kAlbedoValues * per_sample < 0.25 * options.seconds};
 }
 
 nlohmann::ordered_json EnergyJson(const EnergySummary& energy) {
@@ -46,13 +68,17 @@ std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms
 
 nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                                   const MeasureOptions& options) {
-  const std::vector<BrdfSample> heldout = HeldOutSamples(material, options.samples, options.seed);
+  const Allowance allowance = AllowanceFor(material, options);
+  const std::vector<BrdfSample> heldout = HeldOutSamples(material, allowance.samples, options.seed);
   const HeldOutErrors errors = MeasureErrors(heldout, fit);
   const ColorErrors colors = MeasureColorErrors(heldout, fit);
   const Reciprocity reciprocity = MeasureReciprocity(fit);
   const Energy energy = MeasureEnergy(fit);
-  const Energy of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
-  const auto at_measured = SamplesAtMeasured(material, options.samples, options.seed);
+  Energy of_material;
+  if (allowance.material_albedo) {
+    of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
+  }
+  const auto at_measured = SamplesAtMeasured(material, allowance.samples, options.seed);
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
           {"error_at_measured", MeasureErrors(at_measured, fit).mean_abs_log_error},
           {"reciprocal_floor", ReciprocalFloor(heldout, material)},
@@ -62,8 +88,11 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
           {"max_directional_albedo", energy.max_directional_albedo},
           {"energy", EnergyVerdict(energy)},
           {"eal", energy.eal},
-          {"material_max_directional_albedo", of_material.max_directional_albedo},
-          {"material_energy", EnergyVerdict(of_material)},
+          {"material_max_directional_albedo",
+           allowance.material_albedo ? nlohmann::ordered_json(of_material.max_directional_albedo)
+                                     : nlohmann::ordered_json()},
+          {"material_energy",
+           allowance.material_albedo ? EnergyVerdict(of_material) : "not measured: no time left"},
           {"chromaticity_error", errors.chromaticity_error},
           {"delta_e_mean", colors.delta_e_mean},
           {"delta_e_p95", colors.delta_e_p95},

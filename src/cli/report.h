@@ -1,6 +1,7 @@
 // report.h: what a fit leaves behind besides its weights: measures, metadata and summary.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -15,6 +16,7 @@ namespace pbnbrdf::cli {
 struct MeasureOptions {
   std::uint64_t samples = 200000;
   std::uint64_t seed = 1;
+  double seconds = std::numeric_limits<double>::infinity();  // about what it may take
 };
 
 // The keys are those of MeasuresText, in its order. parameters: numbers that the fit stores.

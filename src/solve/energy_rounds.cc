@@ -14,26 +14,20 @@
 #include <numbers>
 
 #include "pbnbrdf/brdf/albedo.h"
+#include "solve/energy_correction.h"
 #include "solve/training.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// The largest directional albedo that a fit with the energy term may have by its own check, so that
-// other checks, at other angles and by other quadratures, find at most 1 + 1e-6.
-constexpr double kMaxAlbedo = 1.0 - 2e-5;
-// Between the rounds, and in the end.
+// Between the rounds.
 constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .tolerance = 1e-4, .n_phi = 64};
-constexpr AlbedoGrid kLastGrid = {.angles = 160, .n_phi = 64};
 constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
-constexpr double kMinStep = 1e-7;        // of a correction
-constexpr int kMaxCorrections = 50, kMaxNewtonSteps = 50;
-constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
-constexpr int kMaxRounds = 24, kRoundIterations = 40;
+constexpr int kMaxRounds = 24, kRoundIterations = 40, kHastyIterations = 4;
 constexpr double kSmallCorrection = 0.05;   // of the mean absolute log error
 constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
 constexpr double kMinCost = 1e-7;           // of the other terms, for the weight of this one
@@ -45,47 +39,6 @@ const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int 
                            [channel](const IncidentAlbedo& a, const IncidentAlbedo& b) {
                              return a.albedo[channel] < b.albedo[channel];
                            });
-}
-
-// By how much log(1 + f) has to be lowered so that the channel's albedo, which has been measured
-// there, becomes the bound.
-double LoweringAt(const Brdf& network, const IncidentAlbedo& there, int channel, double bound) {
-  static const auto quadrature = AlbedoQuadrature::OnMerlRows(6, 400);
-  const std::vector<AlbedoNode> nodes = quadrature.Nodes(FromSpherical(there.theta_i, there.phi_i));
-  std::vector<DirectionPair> pairs;
-  for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
-  std::vector<Rgb> values(pairs.size());
-  network.Evaluate(pairs, values);
-  double lowering = 0.0;
-  for (int k = 0; k < kMaxNewtonSteps; ++k) {
-    // The albedo, and minus its derivative, of f' = max(0, (1 + f) exp(-lowering) - 1): convex, so
-    // that Newton's steps don't go too far.
-    double albedo = 0.0, slope = 0.0;
-    const double kept = std::exp(-lowering);
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const double lowered = (1.0 + values[n][channel]) * kept;
-      if (!(lowered > 1.0)) continue;
-      albedo += nodes[n].weight * (lowered - 1.0);
-      slope += nodes[n].weight * lowered;
-    }
-    // These nodes aren't those that it was measured with.
-    if (k == 0) bound += albedo - there.albedo[channel];
-    if (!(albedo > bound)) break;
-    lowering += (albedo - bound) / slope;
-  }
-  return lowering;
-}
-
-// For each channel whose albedo is above the bound somewhere, what the direction where it is largest
-// takes.
-Rgb Lowering(const Brdf& network, const std::vector<IncidentAlbedo>& profile, double bound) {
-  Rgb lowering = {};
-  for (int c = 0; c < 3; ++c) {
-    const IncidentAlbedo& largest = LargestIn(profile, c);
-    if (!(largest.albedo[c] > bound)) continue;
-    lowering[c] = LoweringAt(network, largest, c, bound);
-  }
-  return lowering;
 }
 
 class EnergyConstraints {
@@ -152,43 +105,10 @@ void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
   strata_.push_back({wi, solid_angle_, {kMaxAlbedo, kMaxAlbedo, kMaxAlbedo}});
 }
 
-// About what LowerToConserve lowers log(1 + f) by if the largest directional albedo is so much.
+// What lowering all of log(1 + f) takes if the largest directional albedo is so much; LowerToConserve takes
+// less.
 double CorrectionOf(double max_albedo) {
   return std::log((std::max(max_albedo, kMaxAlbedo) + kPi) / (kMaxAlbedo + kPi));
-}
-
-struct Correction {
-  double lowered;     // log(1 + f), in the channel where it was lowered most
-  double max_albedo;  // the largest directional albedo that is left
-};
-
-// Lowers the biases of the last layer, which leaves f' = max(0, (1 + f) exp(-s) - 1) <= f, by about
-// the least s of each channel with which no directional albedo is above kMaxAlbedo. A reciprocal
-// network stays so.
-Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
-  const int last = shape.num_layers() - 1, in = shape.in(last);
-  Rgb sum = {};
-  double largest = 0.0;
-  // In single precision until nothing is left to do; then in double.
-  for (bool exactly : {false, true}) {
-    const double bound = exactly ? kMaxAlbedo : kMaxAlbedo - kRounding;
-    for (int k = 0; k < kMaxCorrections; ++k) {
-      const NeuralBrdf exact(shape, *weights);
-      const std::unique_ptr<Brdf> single = exact.SinglePrecision();
-      const Brdf& network = exactly ? static_cast<const Brdf&>(exact) : *single;
-      const std::vector<IncidentAlbedo> profile = AlbedoProfile(network, kLastGrid);
-      largest = Largest(LargestAlbedos(profile));
-      if (!(largest > bound)) break;
-      const Rgb lowering = Lowering(network, profile, bound);
-      for (int c = 0; c < shape.num_outputs(); ++c) {
-        if (lowering[c] == 0.0) continue;
-        const double step = lowering[c] + std::ldexp(kMinStep, k);  // more, if it goes on and on
-        sum[c] += step;
-        (*weights)[shape.offset(last) + c * (in + 1) + in] -= step;
-      }
-    }
-  }
-  return {Largest(sum), largest};
 }
 
 // With which the energy term costs as much as all else; 0 where its cost isn't finite.
@@ -205,10 +125,16 @@ double BalancedWeight(const std::vector<EnergyStratum>& strata, Training* traini
 // The term's weight starts where the term costs as much as the rest, and grows from round to round
 // until what remains above 1 is small. It is kept from outweighing the rest by more than it must:
 // otherwise a fit gives up whole lobes.
+//
+// A fit that the clock has cut short takes short rounds and larger steps of the weight.
 void RunRounds(double weight, EnergyConstraints* constraints, Training* training) {
   FitSummary& summary = training->summary();
+  const Termination ended = summary.termination;
+  const std::string message = summary.message;
+  const bool in_haste = ended == Termination::kMaxSeconds;
+  const int iterations = in_haste ? kHastyIterations : kRoundIterations;
   EnergySummary& energy = summary.energy;
-  double max_over_balance = 1.0;
+  double max_over_balance = in_haste ? kOverBalance : 1.0;
   const int last = summary.iterations + training->options().schedule.max_iterations;
   while (energy.rounds < kMaxRounds && summary.iterations < last && training->MayContinue()) {
     const double error = training->validation().MeanAbsLogError(training->weights().data());
@@ -218,8 +144,8 @@ void RunRounds(double weight, EnergyConstraints* constraints, Training* training
     weight = std::min(weight * grown,
                       max_over_balance * BalancedWeight(constraints->strata(), training));
     training->SetEnergy(weight, constraints->strata());
-    RunStages(training, std::min(kRoundIterations * training->solver().traits.pace,
-                                 last - summary.iterations));
+    RunStages(training,
+              std::min(iterations * training->solver().traits.pace, last - summary.iterations));
     const double excess = energy.max_albedo - 1.0;
     energy.max_albedo = constraints->Measure(training->weights());
     const bool fell = energy.max_albedo - 1.0 < kRoundFall * excess;
@@ -227,6 +153,9 @@ void RunRounds(double weight, EnergyConstraints* constraints, Training* training
     energy.strata = constraints->strata().size();
     ++energy.rounds;
   }
+  if (!in_haste) return;
+  summary.termination = ended;
+  summary.message = message;
 }
 
 }  // namespace
@@ -240,7 +169,7 @@ void ConserveEnergy(const FitProblem& problem, Training* training) {
   }
   if (energy.max_albedo < kClearlyConserved || !training->options().certify_energy) return;
   const Correction correction = LowerToConserve(problem.Shape(), &training->weights());
-  energy.correction = correction.lowered;
+  energy.correction = correction.change;
   energy.max_albedo = correction.max_albedo;
 }
 

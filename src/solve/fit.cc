@@ -13,14 +13,20 @@
 namespace pbnbrdf {
 namespace {
 
+// Of the time, for the stages without the energy term, so that some is left for those with it.
+constexpr double kFirstPart = 0.7;
+
 // The energy term waits until the rest is fitted: from random weights its square outweighs all else
 // by orders of magnitude and leads astray, and most materials never need it.
 Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& options) {
   Training training(material, problem, options);
   training.Start();
   if (options.schedule.starts > 1) RunStarts(&training);
+  const bool conserves = problem.terms.EnergyWeight() > 0.0;
+  if (conserves && !training.solver().traits.is_stochastic) training.LimitTo(kFirstPart);
   RunStages(&training, options.schedule.max_iterations);
-  if (problem.terms.EnergyWeight() > 0.0) ConserveEnergy(problem, &training);
+  training.LimitTo(1.0);
+  if (conserves) ConserveEnergy(problem, &training);
   training.Finish();
   return {NeuralBrdf(problem.Shape(), training.weights()), problem, training.summary()};
 }

@@ -89,8 +89,11 @@ void Training::StartAnew(int index) {
 }
 
 bool Training::MayContinue() const {
-  return summary_.termination != Termination::kInterrupted &&
-         timer_.Seconds() < options_.schedule.max_seconds;
+  return summary_.termination != Termination::kInterrupted && SecondsLeft() > 0.0;
+}
+
+double Training::SecondsLeft() const {
+  return limit_ * options_.schedule.max_seconds - timer_.Seconds();
 }
 
 void Training::TakeMoreSamples() {
@@ -121,7 +124,7 @@ double Training::Minimize(int max_iterations,
   stage.max_iterations = max_iterations;
   stage.curvature_samples = curvature_samples_;
   stage.function_tolerance = options_.schedule.function_tolerance;
-  stage.seconds_left = [this] { return options_.schedule.max_seconds - timer_.Seconds(); };
+  stage.seconds_left = [this] { return SecondsLeft(); };
   stage.on_iteration = std::move(on_iteration);
   const StageResult result =
       solver_.minimize({problem_, options_, samples_, strata_, objective_.get()}, stage, &weights_);

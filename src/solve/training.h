@@ -32,6 +32,9 @@ class Training {
   // At random weights, those of the index-th start.
   void StartAnew(int index);
 
+  // From now on the clock ends the fit when this part of FitOptions::schedule.max_seconds has passed.
+  void LimitTo(double part) { limit_ = part; }
+
   // Whether neither the user nor the clock has ended the fit.
   bool MayContinue() const;
 
@@ -56,6 +59,7 @@ class Training {
   void Finish();
 
  private:
+  double SecondsLeft() const;
   bool AgreesInDouble();
 
   Timer timer_;
@@ -69,6 +73,7 @@ class Training {
   std::vector<EnergyStratum> strata_;
   std::unique_ptr<Objective> objective_, validation_, heldout_;
   std::size_t curvature_samples_;
+  double limit_ = 1.0;
   std::vector<double> weights_;
   FitSummary summary_;
 };

@@ -26,8 +26,13 @@ FitProblem SmallProblem(double log_weight, double chromaticity_weight) {
 }
 
 std::vector<BrdfSample> Samples(const FitProblem& problem) {
-  return DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, Sampling::kUniform,
-                     problem.sampling.samples, /*seed=*/1);
+  std::vector<BrdfSample> samples =
+      DrawSamples(*MakeBuiltin("satin-gold"), SampleSet::kTraining, Sampling::kUniform,
+                  problem.sampling.samples, /*seed=*/1);
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].weight = 1.0 / (1.0 + static_cast<double>(n % 3));
+  }
+  return samples;
 }
 
 std::vector<float> Gradient(const FitProblem& problem, const Minibatches& minibatches,

@@ -333,6 +333,42 @@ TEST(Objective, CurvatureOfPartsAddsUpToThatOfAll) {
   for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], all.hessian[i], 1e-12);
 }
 
+// A weight of 1 beside one of 1/2, or of 1/4, is two copies of the sample, or four.
+TEST(Objective, AWeightIsANumberOfCopies) {
+  for (const Loss loss : {Loss::kL2, Loss::kSoftL1, Loss::kAbsolute}) {
+    FitProblem problem = SmallProblem();
+    problem.terms.SetWeight("chromaticity", 0.3);
+    problem.terms.loss = loss;
+    std::vector<BrdfSample> weighted = Samples(problem), copies;
+    for (std::size_t n = 0; n < weighted.size(); ++n) {
+      const int count = 1 << n % 3;
+      copies.insert(copies.end(), static_cast<std::size_t>(count), weighted[n]);
+      weighted[n].weight = count / 4.0;
+    }
+    std::vector<double> weights = RandomWeights(problem.Shape(), 0.8, /*seed=*/3);
+    const auto a = MakeObjective(problem, Precision::kDouble, weighted);
+    const auto b = MakeObjective(problem, Precision::kDouble, copies);
+    const double cost = b->Cost(weights.data());
+    EXPECT_NEAR(a->Cost(weights.data()), cost, 1e-12 * cost);
+    std::vector<double> of_a(weights.size()), of_b(weights.size());
+    double unused;
+    ASSERT_TRUE(a->Gradient(weights.data(), &unused, of_a.data()));
+    ASSERT_TRUE(b->Gradient(weights.data(), &unused, of_b.data()));
+    for (std::size_t k = 0; k < of_a.size(); ++k) EXPECT_NEAR(of_a[k], of_b[k], 1e-12) << k;
+    if (loss == Loss::kAbsolute) continue;
+    Linearization at_a, at_b;
+    ASSERT_TRUE(a->Linearize(weights.data(), &at_a));
+    ASSERT_TRUE(b->Linearize(weights.data(), &at_b));
+    const Deviation worst = Compare(at_a, at_b);
+    EXPECT_LE(std::max({worst.cost, worst.gradient, worst.hessian}), 1e-10);
+    ceres::Problem ceres_problem;
+    AddAutodiff(problem, weighted, {}, weights.data(), &ceres_problem);
+    double ceres_cost = 0.0;
+    ASSERT_TRUE(ceres_problem.Evaluate({}, &ceres_cost, nullptr, nullptr, nullptr));
+    EXPECT_NEAR(ceres_cost, cost, 1e-12 * cost);
+  }
+}
+
 TEST(Objective, GrownIsTheSameToTheBitAsMadeOfAll) {
   FitProblem problem = SmallProblem();
   problem.sampling.samples = 1000;

@@ -44,6 +44,37 @@ TEST(Sampling, AStreamGivesTheSameSamplesInAnyPortions) {
   }
 }
 
+// Measured at theta_i = 0.5 only, and negative.
+class OnceMeasuredBrdf final : public Brdf {
+ public:
+  void EvaluateUnclipped(std::span<const DirectionPair>, std::span<Rgb> values) const override {
+    for (Rgb& value : values) value = {-0.1, -0.1, 0.2};
+  }
+  double Certainty(const DirectionPair& pair) const override {
+    return std::abs(std::acos(pair.wi.z) - 0.5) < 1e-9 ? 1.0 : 0.25;
+  }
+  std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override {
+    return DirectionPair{FromSpherical(0.5, 0.0), pair.wo};
+  }
+  std::string Description() const override { return "measured once"; }
+};
+
+TEST(Sampling, TrainingHasAPartAtMeasuredDirectionsAndWeights) {
+  const OnceMeasuredBrdf brdf;
+  int measured = 0;
+  const auto samples = DrawSamples(brdf, SampleSet::kTraining, Sampling::kUniform, 4000, 1);
+  for (const BrdfSample& sample : samples) {
+    const bool is_measured = brdf.Certainty(sample.pair) == 1.0;
+    EXPECT_EQ(sample.weight, is_measured ? 1.0 : 0.5);
+    EXPECT_EQ(sample.value[0], -0.1) << "negative measurements take part";
+    measured += is_measured;
+  }
+  EXPECT_NEAR(measured / 4000.0, 0.4, 0.06);
+  for (const BrdfSample& sample : SamplesAtMeasured(brdf, 100, 1)) {
+    EXPECT_EQ(brdf.Certainty(sample.pair), 1.0);
+  }
+}
+
 TEST(Sampling, SameSeedSameSamples) {
   const auto a = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 5);
   const auto b = DrawSamples(kGrey, SampleSet::kTraining, Sampling::kHighlight, 1000, 5);

@@ -119,6 +119,27 @@ TEST(Merl, InvalidBinsDontLeak) {
   }
 }
 
+// A single channel below 0 is noise, and so are three different ones.
+TEST(Merl, NegativeNoiseIsKnownAndKept) {
+  TemporaryFolder folder;
+  std::string bytes = FileOf(1500.0);
+  const std::size_t bin = Bin(10, 20, 30);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double value = -3.0 * static_cast<double>(c + 1);
+    std::memcpy(&bytes[12 + 8 * (c * MerlBrdf::kBins + bin)], &value, 8);
+  }
+  WriteBytes(folder / "t.binary", bytes);
+  const MerlBrdf table = MerlBrdf::Read(folder / "t.binary");
+  const DirectionPair pair = PairAt(10, 20, 30 + 1e-9);
+  EXPECT_TRUE(table.IsKnown(pair));
+  Rgb unclipped;
+  table.EvaluateUnclipped({&pair, 1}, {&unclipped, 1});
+  EXPECT_NEAR(unclipped[0], -0.002, 1e-6);
+  EXPECT_NEAR(unclipped[2], -0.006 * 1.66, 1e-6);
+  EXPECT_EQ(ValueAt(table, pair)[2], 0.0);
+  EXPECT_THAT(table.Description(), HasSubstr("1 with a negative channel"));
+}
+
 TEST(Merl, BadFilesAreNamed) {
   TemporaryFolder folder;
   const std::string path = folder / "m.binary";

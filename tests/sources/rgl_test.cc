@@ -134,6 +134,81 @@ TEST(Rgl, IsotropicFilesTurn) {
   }
 }
 
+// Colours that depend on theta_i alone: value k at node k.
+TensorWriter FileByAngle(const std::vector<float>& theta_i, const std::vector<float>& values) {
+  TensorWriter file = ConstantFile(1, {0.0f, 0.0f, 0.0f});
+  const std::uint64_t n = theta_i.size(), size = 3;
+  std::vector<float> colors;
+  for (float value : values) colors.insert(colors.end(), 3 * size * size, value);
+  const std::vector<float> ones(n * size * size, 1.0f);
+  return file.Replace("theta_i", {n}, theta_i)
+      .Replace("vndf", {1, n, size, size}, ones)
+      .Replace("luminance", {1, n, size, size}, ones)
+      .Replace("rgb", {1, n, 3, size, size}, colors);
+}
+
+// f cos_o 4 sigma / D of a file by FileByAngle.
+double TableValue(const Brdf& brdf, double theta_i) {
+  const DirectionPair pair = {FromSpherical(theta_i, 0.3), FromSpherical(0.4, 2.0)};
+  return ValueAt(brdf, pair)[1] * pair.wo.z * 4.0 * kPi;
+}
+
+class RglByAngle : public testing::Test {
+ protected:
+  RglByAngle() {
+    WriteBytes(folder_ / "a.bsdf", FileByAngle(kAngles, kValues).Bytes());
+    brdf_.emplace(RglBrdf::Read(folder_ / "a.bsdf"));
+  }
+
+  static inline const std::vector<float> kAngles = {0.0f, 0.4f, 0.7f, 1.0f, 1.3f, 1.5707f};
+  static inline const std::vector<float> kValues = {0.5f, 0.2f, 0.25f, 0.9f, 1.5f, 3.0f};
+  TemporaryFolder folder_;
+  std::optional<RglBrdf> brdf_;
+};
+
+TEST_F(RglByAngle, TheBestEstimateGoesThroughTheNodesAndStaysBetweenThem) {
+  const std::unique_ptr<Brdf> best = brdf_->BestEstimate();
+  double largest_difference = 0.0;
+  for (std::size_t k = 0; k + 1 < kAngles.size(); ++k) {
+    EXPECT_NEAR(TableValue(*best, kAngles[k]), kValues[k], 1e-4);
+    double last = kValues[k];
+    for (double t : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+      const double theta = kAngles[k] + t * (double(kAngles[k + 1]) - kAngles[k]);
+      const double value = TableValue(*best, theta);
+      EXPECT_GE((value - last) * (kValues[k + 1] - kValues[k]), -1e-6) << theta;
+      EXPECT_LE(std::abs(value - kValues[k]), std::abs(kValues[k + 1] - kValues[k]) + 1e-4);
+      last = value;
+      largest_difference =
+          std::max(largest_difference, std::abs(value - TableValue(*brdf_, theta)));
+    }
+  }
+  EXPECT_GT(largest_difference, 0.02);
+}
+
+TEST_F(RglByAngle, CertaintyIsLargestAtMeasuredAngles) {
+  const Vec3 wo = FromSpherical(0.4, 2.0);
+  const auto at = [&](double theta) { return brdf_->Certainty({FromSpherical(theta, 0.1), wo}); };
+  for (std::size_t k = 0; k + 1 < kAngles.size(); ++k) EXPECT_NEAR(at(kAngles[k]), 1.0, 1e-6);
+  EXPECT_LT(at(0.55), at(0.5));
+  EXPECT_NEAR(at(0.55), 1.0 / 17.0, 1e-6);
+  EXPECT_LT(at(1.56), at(1.4)) << "nothing is measured at 90 degrees";
+  const auto nearest = brdf_->NearestMeasured({FromSpherical(0.53, 0.1), wo});
+  ASSERT_TRUE(nearest);
+  EXPECT_NEAR(std::acos(nearest->wi.z), 0.4, 1e-6);
+  EXPECT_NEAR(std::atan2(nearest->wi.y, nearest->wi.x), 0.1, 1e-9);
+  EXPECT_EQ(nearest->wo, wo);
+}
+
+TEST_F(RglByAngle, AnAngleCanBeLeftOut) {
+  ASSERT_EQ(brdf_->IncidentAngles().size(), 5u);
+  const RglBrdf rest = brdf_->WithoutIncidentAngle(2);
+  EXPECT_EQ(rest.IncidentAngles().size(), 4u);
+  for (double theta : {0.2, 0.4, 1.0, 1.2}) {
+    EXPECT_NEAR(TableValue(rest, theta), TableValue(*brdf_, theta), 1e-6) << theta;
+  }
+  EXPECT_NEAR(TableValue(rest, 0.7), 0.55, 1e-4);
+}
+
 TEST(Rgl, AConstantFileIsWhatTheFormulaSays) {
   TemporaryFolder folder;
   for (std::uint64_t n_phi : {1, 5}) {

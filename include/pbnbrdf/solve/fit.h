@@ -89,7 +89,7 @@ struct EnergySummary {
   double max_albedo = 0.0;        // and in the end, by the fit's own check
   int rounds = 0;                 // stages with the term; 0: it wasn't needed
   std::size_t strata = 0;         // of incident directions, in the last of them
-  double correction = 0.0;        // what log(1 + f) was lowered by in the end, at most
+  double correction = 0.0;        // mean change of log(1 + f) that the rest took in the end
   EnergyWork work;
 };
 

@@ -1,0 +1,26 @@
+// energy_correction.h: the last step of a fit that conserves energy.
+#pragma once
+
+#include <vector>
+
+#include "pbnbrdf/network/network_shape.h"
+
+namespace pbnbrdf {
+
+// The largest directional albedo that a fit with the energy term may have by its own check, so that
+// other checks, at other angles and by other quadratures, find at most 1 + 1e-6.
+inline constexpr double kMaxAlbedo = 1.0 - 2e-5;
+
+struct Correction {
+  double change;  // mean |change of log(1 + f)| over directions, in the channel that changed most
+  double max_albedo;  // the largest directional albedo that is left
+};
+
+// Changes the weights of the last layer until no directional albedo is above kMaxAlbedo. Each step
+// takes the direction where an albedo is largest, and lowers it by the change of the channel's weights
+// that changes log(1 + f) least, in the mean square over all angles: near that direction if the
+// network can tell it from others. If albedos keep exceeding 1, the whole channel is lowered, which always
+// ends. A reciprocal network stays so.
+Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
+
+}  // namespace pbnbrdf
