@@ -3,7 +3,7 @@
 #include <iterator>
 
 #include "base/text.h"
-#include "commands.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"
 #include "sources/direction_columns.h"

@@ -28,7 +28,7 @@ std::string EnergyVerdict(const Energy& energy) {
   return text.str();
 }
 
-nlohmann::ordered_json EnergyJson(const EnergySummary& energy) {
+Json EnergyJson(const EnergySummary& energy) {
   return {{"first_max_albedo", energy.first_max_albedo},
           {"max_albedo", energy.max_albedo},
           {"rounds", energy.rounds},
@@ -44,8 +44,8 @@ std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms
 
 }  // namespace
 
-nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
-                                  const MeasureOptions& options) {
+Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
+                const MeasureOptions& options) {
   const std::vector<BrdfSample> heldout = HeldOutSamples(material, options.samples, options.seed);
   const HeldOutErrors errors = MeasureErrors(heldout, fit);
   const ColorErrors colors = MeasureColorErrors(heldout, fit);
@@ -71,7 +71,7 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
           {"dark_samples", colors.dark_samples}};
 }
 
-std::string MeasuresText(const nlohmann::ordered_json& measures) {
+std::string MeasuresText(const Json& measures) {
   constexpr std::pair<const char*, const char*> kMeanings[] = {
       {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
       {"rmse", "root mean square error of f cos, 1/sr"},
@@ -107,8 +107,7 @@ std::string MeasuresText(const nlohmann::ordered_json& measures) {
   return text.str();
 }
 
-NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
-                        const nlohmann::ordered_json& measures) {
+NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject, const Json& measures) {
   const auto& [network, problem, summary] = fit;
   return {network.shape(),
           network.weights(),
@@ -123,8 +122,7 @@ NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
            {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}}};
 }
 
-nlohmann::ordered_json FitSummaryJson(const Fit& fit, const FitSubject& subject,
-                                      nlohmann::ordered_json measures) {
+Json FitSummaryJson(const Fit& fit, const FitSubject& subject, Json measures) {
   const FitSummary& summary = fit.summary;
   measures["material"] = subject.material.source;
   measures["scale_to_albedo"] = subject.material.scale_to_albedo;

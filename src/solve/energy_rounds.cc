@@ -30,7 +30,8 @@ constexpr double kSameDirection = 0.02;  // radians at the normal, less towards 
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 constexpr double kMinStep = 1e-7;        // of a correction
 constexpr int kMaxCorrections = 50, kMaxNewtonSteps = 50;
-constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
+constexpr double kRounding =
+    2e-6;  // the largest error of an albedo in single precision that was seen
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
 constexpr int kMaxRounds = 24, kRoundIterations = 40;
@@ -123,7 +124,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     profile_ = AlbedoProfile(network, kRoundGrid);
     measured_ = weights;
   }
-  // What the energy term's own quadrature has to be told.
+  // A limit makes up for the error of the energy term's own quadrature, which is coarser.
   const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
@@ -142,7 +143,7 @@ void EnergyConstraints::Exchange() {
   }
 }
 
-// Unless there is one already, or no need of one.
+// Unless there is one nearby, or the albedo there is small enough.
 void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
   if (!(Largest(at.albedo) > kMaxAlbedo)) return;
   const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
@@ -191,7 +192,7 @@ Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weigh
   return {Largest(sum), largest};
 }
 
-// With which the energy term costs as much as all else; 0 where its cost isn't finite.
+// The weight with which the energy term costs as much as all other terms; 0 where its cost isn't finite.
 double BalancedWeight(const std::vector<EnergyStratum>& strata, Training* training) {
   Objective& validation = training->validation();
   validation.SetEnergy(0.0, {});
