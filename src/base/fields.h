@@ -43,7 +43,7 @@ struct Field {
   std::string name, help;
   std::string default_text;  // the value of the object when the field was made
   bool is_switch = false;    // of type bool
-  bool is_common = false;    // one of those that people use: --help shows it
+  bool is_common = false;    // --help shows it, not only --help=all
   bool is_required = false;  // its text must not be empty
   std::string group;         // the heading that it stands under
 
@@ -111,7 +111,7 @@ class Fields {
   void Group(std::string title) { group_ = std::move(title); }
 
   Fields& Add(Field field);
-  // The same, as one that people use, and as one that they must use.
+  // The same, but --help shows it; the same, but it must also be given.
   Fields& AddCommon(Field field);
   Fields& AddRequired(Field field);
   // Those of another table, under their own headings.

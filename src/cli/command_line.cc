@@ -122,7 +122,7 @@ void CheckOutputs(const std::vector<Output>& outputs) {
   }
 }
 
-std::string JsonText(const nlohmann::ordered_json& json) {
+std::string JsonText(const Json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -24,6 +24,7 @@ auto CheckFlags(Function function) {
 }
 
 using Arguments = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
 struct Command {
   std::string name;
@@ -62,6 +63,19 @@ struct Output {
 void CheckOutputs(const std::vector<Output>& outputs);
 
 // As a file has it: indented, whatever bytes its texts have.
-std::string JsonText(const nlohmann::ordered_json& json);
+std::string JsonText(const Json& json);
+
+// The subcommands, each in a file of its own.
+Command CompareCommand();
+Command EvalCommand();
+Command ExportCommand();
+Command FitCommand();
+Command FitModelCommand();
+Command InfoCommand();
+Command MeasureCommand();
+
+// With the render module only.
+Command FitSceneCommand();
+Command RenderCommand();
 
 }  // namespace pbnbrdf::cli

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/about.h"
 #include "base/text.h"
-#include "commands.h"
+#include "command_line.h"
 #include "network/safetensors.h"
 #include "pbnbrdf/image/exr.h"
-#include "pbnbrdf/image/open_image.h"
 #include "pbnbrdf/metrics/image_metrics.h"
 #include "pbnbrdf/metrics/lpips.h"
 
@@ -60,8 +60,8 @@ struct Measured {
   std::optional<double> lpips;  // if it is asked for
 };
 
-nlohmann::ordered_json ToJson(const Measured& measured) {
-  nlohmann::ordered_json json;
+Json ToJson(const Measured& measured) {
+  Json json;
   for (const Measure& measure : kMeasures) {
     const double value = measured.errors.*measure.value;
     json[measure.key] = value;
@@ -126,11 +126,7 @@ double ShownLpips(const Image& reference, const Image& test, double exposure,
                   const LpipsWeights& weights, const std::string& file) {
   const Image shown_reference = DisplayImage(reference, exposure);
   const Image shown_test = DisplayImage(test, exposure);
-  try {
-    return Lpips(shown_reference, shown_test, weights);
-  } catch (const Error& error) {
-    Fail(file, ": ", error.what());
-  }
+  return About(file, [&] { return Lpips(shown_reference, shown_test, weights); });
 }
 
 // Measures the two images, and writes the map of errors if it is asked for.

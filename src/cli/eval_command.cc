@@ -2,7 +2,7 @@
 #include <iostream>
 #include <iterator>
 
-#include "commands.h"
+#include "command_line.h"
 #include "direction_csv.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"

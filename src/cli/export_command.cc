@@ -1,5 +1,6 @@
 // pbnbrdf export
-#include "commands.h"
+#include "base/about.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/sources/merl.h"
@@ -50,11 +51,8 @@ void CheckSource(const ExportOptions& options, ExportFormat format) {
 
 std::vector<FileContent> NetworkFiles(const ExportOptions& options, ExportFormat format) {
   const NeuralBrdf network = OpenNetwork(options.fit);
-  try {
-    return ExportedFiles(network, format, options.out, options.name);
-  } catch (const Error& error) {
-    Fail(options.fit, ", exported as ", options.format, ": ", error.what());
-  }
+  return About(StrCat(options.fit, ", exported as ", options.format),
+               [&] { return ExportedFiles(network, format, options.out, options.name); });
 }
 
 int RunExport(const ExportOptions& options, const Arguments&) {
@@ -66,7 +64,7 @@ int RunExport(const ExportOptions& options, const Arguments&) {
     return 0;
   }
   const std::unique_ptr<Brdf> material = options.material.Open();
-  AboutMaterial(options.material, [&] { return MerlBrdf::Tabulate(*material); }).Write(options.out);
+  About(options.material.source, [&] { return MerlBrdf::Tabulate(*material); }).Write(options.out);
   return 0;
 }
 

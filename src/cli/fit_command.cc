@@ -2,8 +2,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/about.h"
 #include "base/text.h"
-#include "commands.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/solve/problem_file.h"
@@ -83,7 +84,7 @@ Fit FitNetwork(const FitCommandOptions& options, const Brdf& material, std::stri
     *trace += TraceRow(progress);
     return !Interrupted();
   };
-  return AboutMaterial(options.material, [&] { return FitBrdf(material, problem, fit_options); });
+  return About(options.material.source, [&] { return FitBrdf(material, problem, fit_options); });
 }
 
 // What the energy term did, in a line; "" if it wasn't needed.
@@ -95,8 +96,7 @@ std::string EnergyText(const EnergySummary& energy) {
                 energy.correction, "\n");
 }
 
-void PrintFit(const std::string& out, const Brdf& material, const Fit& fit,
-              const nlohmann::ordered_json& measures) {
+void PrintFit(const std::string& out, const Brdf& material, const Fit& fit, const Json& measures) {
   const FitSummary& summary = fit.summary;
   std::cout << out << ": " << fit.network.Description() << "; "
             << NameOf(kTerminations, summary.termination) << " after " << summary.iterations
@@ -122,7 +122,7 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
   std::string trace = "iteration,seconds,cost,heldout_error\n";
   const double max_seconds = options.setup.options.schedule.max_seconds;
   const Fit fit = FitNetwork(options, *material, &trace);
-  const nlohmann::ordered_json measures =
+  const Json measures =
       MeasureFit(*material, fit.network, fit.network.weights().size(),
                  {.seconds = std::max(kMinMeasuring, kMeasuringPart * max_seconds)});
 

@@ -2,7 +2,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "commands.h"
+#include "base/about.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "models/fit_analytic_fields.h"
 #include "pbnbrdf/base/files.h"
@@ -60,10 +61,10 @@ Fields FitModelFields(FitModelOptions* options) {
   return fields.Add(SolutionFields(options));
 }
 
-nlohmann::ordered_json FitJson(const FitModelOptions& options, const AnalyticFit& fit,
-                               std::size_t samples, const nlohmann::ordered_json& errors) {
+Json FitJson(const FitModelOptions& options, const AnalyticFit& fit, std::size_t samples,
+             const Json& errors) {
   FitModelOptions copy = options;
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(fit.brdf.Json());
+  Json json = Json::parse(fit.brdf.Json());
   json["source"] = fit.brdf.Text();
   json["version"] = PBNBRDF_VERSION;
   json["material"] = options.material.source;
@@ -89,14 +90,13 @@ int RunFitModel(const FitModelOptions& options, const Arguments&) {
   CheckOutputs({{"out", options.out}});
   const std::unique_ptr<Brdf> material = options.material.Open();
   std::vector<BrdfSample> samples;
-  const AnalyticFit fit = AboutMaterial(options.material, [&] {
+  const AnalyticFit fit = About(options.material.source, [&] {
     samples = DrawSamples(*material, SampleSet::kTraining, options.sampling.angles,
                           options.sampling.samples, options.sampling.seed);
     return FitAnalytic(samples, material->IsIsotropic(), FindAnalyticModel(options.model),
                        options.fit);
   });
-  const nlohmann::ordered_json errors =
-      MeasureFit(*material, fit.brdf, fit.brdf.parameters().size());
+  const Json errors = MeasureFit(*material, fit.brdf, fit.brdf.parameters().size());
   WriteFile(options.out, JsonText(FitJson(options, fit, samples.size(), errors)));
   if (!options.quiet && options.out != "-") {
     std::cout << options.out << ": " << fit.brdf.Description() << "; "

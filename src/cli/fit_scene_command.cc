@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "base/timer.h"
-#include "commands.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/render/demand.h"
@@ -68,15 +68,14 @@ std::string Flagfile(FitSceneOptions options, const FitProblem& fitted) {
 struct ScenePlan {
   std::string name;
   MaterialOptions material;
-  double share = 0.0, sensitivity = 0.0;  // MaterialDemand's
-  bool needed = false;
+  MaterialDemand demand;
   std::optional<SkipReason> skip_reason;  // none: the material is fitted
   std::string why;                        // it is fitted or not, a sentence
   FitProblem problem;
 };
 
-// An error of log(1 + f cos) changes the image by less than a hundredth of itself: an error ten times as
-// large as elsewhere shows less. Such a material gets a tenth of the samples and weights.
+// Below this an error of log(1 + f cos) changes the image by less than a hundredth of itself: even ten times
+// the usual error doesn't show. Such a material gets a tenth of the samples and weights.
 constexpr double kMinSensitivity = 0.01;
 constexpr std::uint64_t kFewSamples = 6000;
 const std::vector<int> kSmallNetwork = {8, 8};
@@ -99,13 +98,8 @@ void MakeSmall(FitProblem* problem) {
 // samples, unless the flags ask for even fewer.
 ScenePlan PlanFit(const SceneMaterial& material, const MaterialDemand& demand,
                   const FitProblem& problem) {
-  ScenePlan plan;
-  plan.name = material.name;
-  plan.material = {material.source, material.scale_to_albedo};
-  plan.share = demand.share;
-  plan.sensitivity = demand.sensitivity;
-  plan.needed = demand.reached;
-  plan.problem = problem;
+  ScenePlan plan = {material.name, {material.source, material.scale_to_albedo}, demand, {}, "",
+                    problem};
   if (!demand.reached) {
     plan.skip_reason = demand.referenced ? SkipReason::kNotReached : SkipReason::kUnreferenced;
     plan.why = demand.referenced ? "no path hits it" : "no shape has it";
@@ -120,12 +114,15 @@ ScenePlan PlanFit(const SceneMaterial& material, const MaterialDemand& demand,
   return plan;
 }
 
-nlohmann::ordered_json PlanJson(const ScenePlan& plan, bool skips) {
-  nlohmann::ordered_json skipped;
+Json PlanJson(const ScenePlan& plan, bool skips) {
+  Json skipped;
   if (skips) skipped = NameOf(kSkipReasons, *plan.skip_reason);
-  return {{"material", plan.name}, {"source", plan.material.source},
-          {"share", plan.share},   {"sensitivity", plan.sensitivity},
-          {"needed", plan.needed}, {"skipped", skipped},
+  return {{"material", plan.name},
+          {"source", plan.material.source},
+          {"share", plan.demand.share},
+          {"sensitivity", plan.demand.sensitivity},
+          {"needed", plan.demand.reached},
+          {"skipped", skipped},
           {"why", plan.why}};
 }
 
@@ -155,11 +152,10 @@ Fit FitPlanned(const ScenePlan& plan, const Brdf& material, const FitSceneOption
 }
 
 // Fits the material and writes its network. Returns what the summary says of it.
-nlohmann::ordered_json RunPlan(const ScenePlan& plan, const FitSceneOptions& options) try {
+Json RunPlan(const ScenePlan& plan, const FitSceneOptions& options) try {
   const std::unique_ptr<Brdf> material = plan.material.Open();
   const Fit fit = FitPlanned(plan, *material, options);
-  const nlohmann::ordered_json measures =
-      MeasureFit(*material, fit.network, fit.network.weights().size());
+  const Json measures = MeasureFit(*material, fit.network, fit.network.weights().size());
   const FitSubject subject = {plan.material, Flagfile(options, fit.problem)};
   const std::string file = plan.name + ".safetensors";
   WithMetadata(fit, subject, measures).Write(options.InFolder(file));
@@ -167,7 +163,7 @@ nlohmann::ordered_json RunPlan(const ScenePlan& plan, const FitSceneOptions& opt
     std::cout << plan.name << ": " << fit.network.Description() << ", " << fit.summary.seconds
               << " s; " << plan.why << "\n";
   }
-  nlohmann::ordered_json json = PlanJson(plan, /*skips=*/false);
+  Json json = PlanJson(plan, /*skips=*/false);
   json["file"] = file;
   json["hidden"] = fit.problem.network.hidden;
   json.update(FitSummaryJson(fit, subject, measures));
@@ -199,9 +195,9 @@ int RunFitScene(const FitSceneOptions& options, const Arguments&) {
   const std::vector<ScenePlan> plans = PlanFits(scene, options);
   const double demand_seconds = timer.Seconds();
   Work work;
-  nlohmann::ordered_json fits = nlohmann::ordered_json::array();
+  Json fits = Json::array();
   for (const ScenePlan& plan : plans) {
-    work.needed += plan.needed;
+    work.needed += plan.demand.reached;
     const bool skips = plan.skip_reason && !options.no_skip;
     if (skips) ++work.Skipped(*plan.skip_reason);
     if (skips || Interrupted()) {
@@ -212,13 +208,13 @@ int RunFitScene(const FitSceneOptions& options, const Arguments&) {
     fits.push_back(RunPlan(plan, options));
     ++work.done;
   }
-  const nlohmann::ordered_json summary = {{"scene", options.scene},
-                                          {"interrupted", Interrupted()},
-                                          {"demand_seconds", demand_seconds},
-                                          {"seconds", timer.Seconds()},
-                                          {"materials", WorkJson(work, kReasons)},
-                                          {"fits", fits},
-                                          {"version", PBNBRDF_VERSION}};
+  const Json summary = {{"scene", options.scene},
+                        {"interrupted", Interrupted()},
+                        {"demand_seconds", demand_seconds},
+                        {"seconds", timer.Seconds()},
+                        {"materials", WorkJson(work, kReasons)},
+                        {"fits", fits},
+                        {"version", PBNBRDF_VERSION}};
   WriteFile(options.SummaryFile(), JsonText(summary));
   if (!options.quiet) std::cout << WorkText("materials", work, kReasons);
   return 0;

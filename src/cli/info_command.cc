@@ -3,7 +3,7 @@
 #include <iostream>
 #include <map>
 
-#include "commands.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/models/analytic.h"

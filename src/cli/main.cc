@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "commands.h"
+#include "command_line.h"
 
 namespace pbnbrdf::cli {
 namespace {

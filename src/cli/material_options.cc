@@ -1,5 +1,6 @@
 #include "material_options.h"
 
+#include "base/about.h"
 #include "pbnbrdf/brdf/reciprocal.h"
 #include "pbnbrdf/brdf/scaled.h"
 #include "pbnbrdf/sources/open_brdf.h"
@@ -10,7 +11,7 @@ std::unique_ptr<Brdf> MaterialOptions::Open() const {
   std::unique_ptr<Brdf> material = OpenBrdf(source);
   if (symmetrize) material = std::make_unique<ReciprocalBrdf>(std::move(material));
   if (scale_to_albedo == 0.0) return material;
-  return AboutMaterial(*this, [&]() -> std::unique_ptr<Brdf> {
+  return About(source, [&]() -> std::unique_ptr<Brdf> {
     return ScaleToAlbedo(std::move(material), scale_to_albedo);
   });
 }

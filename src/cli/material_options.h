@@ -23,16 +23,6 @@ Field MaterialField(MaterialOptions* material);
 Field ScaleField(MaterialOptions* material);
 Field SymmetrizeField(bool* symmetrize);
 
-// Runs what may find fault with the material, and puts its name before the message.
-template <typename Function>
-auto AboutMaterial(const MaterialOptions& material, Function function) {
-  try {
-    return function();
-  } catch (const Error& error) {
-    Fail(material.source, ": ", error.what());
-  }
-}
-
 // How every command that reads a material explains --material.
 inline constexpr char kSourceNotes[] =
     R"(Sources of reflectance; files are told by what they hold, whatever their names:

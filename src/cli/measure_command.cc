@@ -2,7 +2,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "commands.h"
+#include "base/about.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -58,7 +59,7 @@ OpenedFit OpenFit(const std::string& source) {
 int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
   const OpenedFit fit = OpenFit(options.fit);
   const std::unique_ptr<Brdf> material = options.material.Open();
-  const nlohmann::ordered_json measures = AboutMaterial(options.material, [&] {
+  const Json measures = About(options.material.source, [&] {
     return MeasureFit(*material, *fit.brdf, fit.parameters, options.measure);
   });
   std::cout << (options.json ? measures.dump(2) + "\n" : MeasuresText(measures));

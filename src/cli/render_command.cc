@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "commands.h"
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
@@ -138,7 +138,7 @@ void WriteImages(const RenderCommandOptions& options, const Rendering& rendering
   WriteFiles(files);
 }
 
-// Several files are written at once, which standard output can't be one of.
+// Standard output can't be one of several files that are written at once.
 void CheckImageOutputs(const RenderCommandOptions& options) {
   const std::vector<Output> beside = {{"png", options.png}, {"summary", options.summary}};
   std::vector<Output> outputs = {{"out", options.out}};

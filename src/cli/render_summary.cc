@@ -6,14 +6,14 @@
 
 namespace pbnbrdf::cli {
 
-nlohmann::ordered_json WorkJson(const Work& work, const std::vector<SkipReason>& reasons) {
-  nlohmann::ordered_json json = {{"needed", work.needed}, {"done", work.done}};
+Json WorkJson(const Work& work, const std::vector<SkipReason>& reasons) {
+  Json json = {{"needed", work.needed}, {"done", work.done}};
   for (const SkipReason reason : reasons) {
     json["skipped"][std::string(NameOf(kSkipReasons, reason))] = work.Skipped(reason);
   }
   json["seconds"] = work.seconds;
   const std::optional<double> saved = work.SecondsSavedEstimate();
-  json["seconds_saved_estimate"] = saved ? nlohmann::ordered_json(*saved) : nullptr;
+  json["seconds_saved_estimate"] = saved ? Json(*saved) : nullptr;
   return json;
 }
 
@@ -35,11 +35,11 @@ std::string WorkText(const std::string& kind, const Work& work,
   return text.str();
 }
 
-nlohmann::ordered_json ToJson(const RenderSummary& summary) {
-  nlohmann::ordered_json json = {{"image_samples", summary.samples},
-                                 {"dropped_samples", summary.dropped_samples},
-                                 {"stopped", summary.stopped},
-                                 {"seconds", summary.seconds}};
+Json ToJson(const RenderSummary& summary) {
+  Json json = {{"image_samples", summary.samples},
+               {"dropped_samples", summary.dropped_samples},
+               {"stopped", summary.stopped},
+               {"seconds", summary.seconds}};
   for (const WorkKind& kind : WorkKinds()) {
     json[kind.name] = WorkJson(summary.work.*kind.work, kind.reasons);
   }

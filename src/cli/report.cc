@@ -50,7 +50,7 @@ Allowance AllowanceFor(const Brdf& material, const MeasureOptions& options) {
           kAlbedoValues * per_sample < 0.25 * options.seconds};
 }
 
-nlohmann::ordered_json EnergyJson(const EnergySummary& energy) {
+Json EnergyJson(const EnergySummary& energy) {
   return {{"first_max_albedo", energy.first_max_albedo},
           {"max_albedo", energy.max_albedo},
           {"rounds", energy.rounds},
@@ -66,7 +66,7 @@ std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms
 
 }  // namespace
 
-nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
+Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                                   const MeasureOptions& options) {
   const Allowance allowance = AllowanceFor(material, options);
   const std::vector<BrdfSample> heldout = HeldOutSamples(material, allowance.samples, options.seed);
@@ -89,8 +89,8 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
           {"energy", EnergyVerdict(energy)},
           {"eal", energy.eal},
           {"material_max_directional_albedo",
-           allowance.material_albedo ? nlohmann::ordered_json(of_material.max_directional_albedo)
-                                     : nlohmann::ordered_json()},
+           allowance.material_albedo ? Json(of_material.max_directional_albedo)
+                                     : Json()},
           {"material_energy",
            allowance.material_albedo ? EnergyVerdict(of_material) : "not measured: no time left"},
           {"chromaticity_error", errors.chromaticity_error},
@@ -103,7 +103,7 @@ nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::si
           {"dark_samples", colors.dark_samples}};
 }
 
-std::string MeasuresText(const nlohmann::ordered_json& measures) {
+std::string MeasuresText(const Json& measures) {
   constexpr std::pair<const char*, const char*> kMeanings[] = {
       {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
       {"error_at_measured",
@@ -143,8 +143,7 @@ std::string MeasuresText(const nlohmann::ordered_json& measures) {
   return text.str();
 }
 
-NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
-                        const nlohmann::ordered_json& measures) {
+NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject, const Json& measures) {
   const auto& [network, problem, summary] = fit;
   return {network.shape(),
           network.weights(),
@@ -159,8 +158,7 @@ NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
            {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}}};
 }
 
-nlohmann::ordered_json FitSummaryJson(const Fit& fit, const FitSubject& subject,
-                                      nlohmann::ordered_json measures) {
+Json FitSummaryJson(const Fit& fit, const FitSubject& subject, Json measures) {
   const FitSummary& summary = fit.summary;
   measures["material"] = subject.material.source;
   measures["scale_to_albedo"] = subject.material.scale_to_albedo;

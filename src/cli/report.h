@@ -2,9 +2,9 @@
 #pragma once
 
 #include <limits>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/solve/fit.h"
 
@@ -20,11 +20,11 @@ struct MeasureOptions {
 };
 
 // The keys are those of MeasuresText, in its order. parameters: numbers that the fit stores.
-nlohmann::ordered_json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
-                                  const MeasureOptions& options = {});
+Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
+                const MeasureOptions& options = {});
 
 // A line for each key, with its unit and meaning.
-std::string MeasuresText(const nlohmann::ordered_json& measures);
+std::string MeasuresText(const Json& measures);
 
 struct FitSubject {
   MaterialOptions material;
@@ -32,11 +32,9 @@ struct FitSubject {
 };
 
 // The network with the metadata that its file is to have. measures: MeasureFit's.
-NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject,
-                        const nlohmann::ordered_json& measures);
+NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject, const Json& measures);
 
 // The measures, and after them how the fit went.
-nlohmann::ordered_json FitSummaryJson(const Fit& fit, const FitSubject& subject,
-                                      nlohmann::ordered_json measures);
+Json FitSummaryJson(const Fit& fit, const FitSubject& subject, Json measures);
 
 }  // namespace pbnbrdf::cli

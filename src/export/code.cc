@@ -14,15 +14,15 @@ namespace {
 using Kind = Term::Kind;
 using Vector = std::array<Term, 3>;
 
-// What kind of expression a text is, from the loosest to the one that never needs parentheses.
+// Which operator of an expression binds last, from the loosest to none: an atom never needs parentheses.
 enum class Binding { kTernary, kSum, kProduct, kAtom };
 
 struct Text {
   std::string text;
   Binding binding;
 
-  // In parentheses if it is looser than `least`.
-  std::string Bound(Binding least) const { return binding < least ? "(" + text + ")" : text; }
+  // In parentheses if it is looser than `min`.
+  std::string Bound(Binding min) const { return binding < min ? "(" + text + ")" : text; }
 };
 
 std::string Fill(std::string_view pattern, const std::vector<std::string>& operands) {

@@ -77,10 +77,10 @@ bool ReadRows(Reader& reader, png_bytepp rows) {
 }
 
 Image ToLinear(const std::vector<png_byte>& bytes, int width, int height, bool sixteen_bits) {
-  const std::size_t most = sixteen_bits ? 65535 : 255;
-  std::vector<float> linear(most + 1);
-  for (std::size_t i = 0; i <= most; ++i) {
-    linear[i] = static_cast<float>(FromSrgb(static_cast<double>(i) / static_cast<double>(most)));
+  const std::size_t max = sixteen_bits ? 65535 : 255;
+  std::vector<float> linear(max + 1);
+  for (std::size_t i = 0; i <= max; ++i) {
+    linear[i] = static_cast<float>(FromSrgb(static_cast<double>(i) / static_cast<double>(max)));
   }
   Image image(width, height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {

@@ -12,7 +12,6 @@
 #include <hwy/highway.h>
 
 #include "minimax.h"
-#include "tanh_table.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pbnbrdf::kernels::HWY_NAMESPACE {
@@ -56,7 +55,7 @@ HWY_INLINE V Polynomial(D d, V x, const float (&coefficients)[kSize]) {
 }
 
 #if PBNBRDF_HAS_AVX512
-// values[index mod kTanhIntervals] in each lane.
+// values[index mod kTanhIntervals] for each index of the vector.
 HWY_INLINE hn::Vec512<float> LookUp(const float* values, hn::Vec512<std::int32_t> index) {
   return hn::Vec512<float>{
       _mm512_permutex2var_ps(_mm512_load_ps(values), index.raw, _mm512_load_ps(values + 16))};

@@ -152,8 +152,8 @@ HWY_INLINE void AddProductOf(const T* x, int p, const T* y, int q, int y_stride,
   }
 }
 
-// to[k] += alpha times the sum of the lanes of sum[k], k < kCount: four floats at a time, as their
-// separate sums would take longer than the dot products do.
+// to[k] += alpha times the sum of the numbers in the vector sum[k], k < kCount. Four sums of floats are taken
+// together: one by one they would take longer than the dot products.
 template <int kCount, typename T, class V>
 HWY_INLINE void AddLaneSums(T alpha, const V* sum, T* to) {
   const hn::ScalableTag<T> d;

@@ -12,9 +12,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Luminance, red-green and blue-yellow, each as an own plane, scaled so that white's
-// are 1, 0 and 0: the filters' weights have the sum 1, so that the published scales and offsets of
-// YCxCz cancel.
+// Luminance, red-green and blue-yellow, a plane each, in which white is 1, 0 and 0. The published scales and
+// offsets of YCxCz cancel, as the filters' weights add up to 1.
 using Opponents = std::array<Plane, 3>;
 
 Opponents ToOpponents(const Image& image) {
@@ -100,7 +99,7 @@ Lab SeenColor(const Opponents& planes, std::size_t i) {
 
 double HyAb(const Lab& x, const Lab& y) { return std::abs(x.l - y.l) + HueChromaDifference(x, y); }
 
-// To [0, 1], with kShare of it for the smaller, common differences.
+// Maps a distance to [0, 1]. Small, common distances take the part from 0 to kShare.
 double ColorError(double distance, double largest) {
   constexpr double kExponent = 0.7, kKnee = 0.4, kShare = 0.95;
   const double most = std::pow(largest, kExponent), error = std::pow(distance, kExponent);
@@ -142,7 +141,7 @@ double FeatureError(double edges, double points) {
   return std::sqrt(std::max(std::abs(edges), std::abs(points)) / std::numbers::sqrt2);
 }
 
-// All that is asked of one image.
+// What FLIP computes of each image alone.
 struct Seen {
   explicit Seen(const Image& image) : Seen(ToOpponents(image)) {}
   explicit Seen(const Opponents& planes)

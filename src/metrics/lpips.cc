@@ -15,7 +15,7 @@ namespace {
 constexpr double kShift[3] = {-0.030, -0.088, -0.188};
 constexpr double kScale[3] = {0.458, 0.448, 0.450};
 
-// What the norm of the features is kept from 0 by.
+// Added to the norm of the features, which may be 0.
 constexpr double kEpsilon = 1e-10;
 
 constexpr int kPoolWindow = 3, kPoolStride = 2;

@@ -44,27 +44,17 @@ int LobesOf(const AnalyticModel& model, const AnalyticBrdf::Values& values) {
   return two ? 2 : 1;
 }
 
-// The places that a name sets: one, or two that are a pair; none if it is unknown.
-std::vector<PlacedParameter> PlacesOf(const std::vector<PlacedParameter>& all,
-                                      const std::string& name) {
+// The names of parameters, and the places that each sets: one, or two that are a pair.
+std::vector<std::pair<std::string, std::vector<PlacedParameter>>> PlacesByName(
+    const std::vector<PlacedParameter>& all) {
+  std::vector<std::pair<std::string, std::vector<PlacedParameter>>> places;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].Name() == name) return {all[i]};
+    places.push_back({all[i].Name(), {all[i]}});
     const std::string_view pair_name = all[i].parameter->pair_name;
-    if (!pair_name.empty() && StrCat(pair_name, Suffix(all[i].lobe)) == name) {
-      return {all[i - 1], all[i]};
-    }
+    if (pair_name.empty()) continue;
+    places.push_back({StrCat(pair_name, Suffix(all[i].lobe)), {all[i - 1], all[i]}});
   }
-  return {};
-}
-
-std::vector<std::string> KnownNames(const std::vector<PlacedParameter>& all) {
-  std::vector<std::string> names;
-  for (const PlacedParameter& placed : all) {
-    names.push_back(placed.Name());
-    const std::string_view pair_name = placed.parameter->pair_name;
-    if (!pair_name.empty()) names.push_back(StrCat(pair_name, Suffix(placed.lobe)));
-  }
-  return names;
+  return places;
 }
 
 void SetScalars(const std::string& name, const std::vector<double>& values,
@@ -93,6 +83,8 @@ std::string TextOf(const AnalyticModel& model,
   }
   return StrCat(model.name, ":", text);
 }
+
+std::string Show(const Rgb& rgb) { return StrCat("(", rgb[0], ", ", rgb[1], ", ", rgb[2], ")"); }
 
 }  // namespace
 
@@ -138,9 +130,9 @@ std::vector<PlacedParameter> PlacedParameters(const AnalyticModel& model, int lo
 
 AnalyticBrdf::AnalyticBrdf(const AnalyticModel& model, int lobes, std::vector<double> parameters)
     : model_(&model), lobes_(lobes), parameters_(std::move(parameters)) {
-  const int least = model.lobe.empty() ? 0 : 1, most = model.lobe.empty() ? 0 : kMaxLobes;
-  if (lobes < least || lobes > most) {
-    Fail(model.name, ": ", lobes, " lobes; must be ", least, " to ", most);
+  const int min = model.lobe.empty() ? 0 : 1, max = model.lobe.empty() ? 0 : kMaxLobes;
+  if (lobes < min || lobes > max) {
+    Fail(model.name, ": ", lobes, " lobes; must be ", min, " to ", max);
   }
   if (parameters_.size() != NumScalars(model, lobes)) {
     Fail(model.name, ": ", parameters_.size(), " parameters, expected ", NumScalars(model, lobes));
@@ -165,15 +157,18 @@ AnalyticBrdf AnalyticBrdf::FromValues(const std::string& name, const Values& val
   for (const PlacedParameter& placed : all) {
     SetScalars(placed.Name(), {placed.parameter->initial}, placed, &scalars);
   }
+  const auto places = PlacesByName(all);
   std::set<std::string> given;
   for (const auto& [key, numbers] : values) {
-    const std::vector<PlacedParameter> places = PlacesOf(all, key);
-    if (places.empty()) {
-      const std::vector<std::string> known = KnownNames(all);
+    const auto found = std::find_if(places.begin(), places.end(),
+                                    [&](const auto& place) { return place.first == key; });
+    if (found == places.end()) {
+      std::vector<std::string> known;
+      for (const auto& [known_name, placed] : places) known.push_back(known_name);
       Fail(model.name, ": no parameter '", key, "'; did you mean ", Nearest(known, key),
            "? It has ", Join(known, ", "));
     }
-    for (const PlacedParameter& placed : places) {
+    for (const PlacedParameter& placed : found->second) {
       if (!given.insert(placed.Name()).second) {
         Fail(model.name, ": ", placed.Name(), " is given twice");
       }
@@ -238,6 +233,31 @@ std::string AnalyticBrdf::Description() const {
 
 Rgb AnalyticBrdf::Value(const DirectionPair& pair) const {
   return model_->evaluate(ReflectionGeometry(pair), parameters_.data(), lobes_);
+}
+
+LambertBrdf::LambertBrdf(const Rgb& rho)
+    : AnalyticBrdf(FindAnalyticModel("lambert"), 0, {rho.begin(), rho.end()}) {}
+
+OrenNayarBrdf::OrenNayarBrdf(const Rgb& rho, double sigma)
+    : AnalyticBrdf(FindAnalyticModel("oren_nayar"), 0, {rho[0], rho[1], rho[2], sigma}) {}
+
+WardBrdf::WardBrdf(const Rgb& rho_d, const Rgb& rho_s, LobeWidths alpha)
+    : AnalyticBrdf(FindAnalyticModel("ward_bounded"), 1,
+                   {rho_d[0], rho_d[1], rho_d[2], rho_s[0], rho_s[1], rho_s[2], alpha.x, alpha.y}) {
+}
+
+std::string GgxBrdf::Description() const {
+  return StrCat("GGX, f0 ", Show(f0_), ", ", alpha_.Description(), ", rho_d ", Show(rho_d_));
+}
+
+Rgb GgxBrdf::Value(const DirectionPair& pair) const {
+  const double lobe[] = {1.0, 1.0, 1.0, f0_[0], f0_[1], f0_[2], alpha_.x, alpha_.y};
+  Rgb value = {};
+  GgxFormula::AddLobe(ReflectionGeometry(pair), lobe, value.data());
+  const double diffuse = 28.0 / 23.0 * std::numbers::inv_pi * (1.0 - Pow5(1.0 - 0.5 * pair.wi.z)) *
+                         (1.0 - Pow5(1.0 - 0.5 * pair.wo.z));
+  for (int c = 0; c < 3; ++c) value[c] += rho_d_[c] * (1.0 - f0_[c]) * diffuse;
+  return value;
 }
 
 }  // namespace pbnbrdf

@@ -9,11 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 
 #include "base/timer.h"
 #include "models/analytic_residual.h"
-#include "models/analytic_starts.h"
 #include "models/fit_analytic_fields.h"
 #include "pbnbrdf/base/error.h"
 
@@ -25,13 +24,99 @@ constexpr double kFirstLossScale = 0.03;
 constexpr int kFirstIterations = 40;
 constexpr std::size_t kMaxFinalists = 2;
 
+constexpr double kDarkerPart = 0.3;  // of the samples, the brightest of which is the diffuse part
+constexpr double kBrighterPart = 0.02;  // of the samples: the highlight
+constexpr double kFaint = 1e-4;         // scale of a lobe
+constexpr double kWidthOfSecond = 0.5;  // part of the way from the first lobe's width to `wide`
+
+// The channel's value that the given part of the samples doesn't exceed.
+double Quantile(std::span<const BrdfSample> samples, int channel, double part) {
+  std::vector<double> values;
+  for (const BrdfSample& sample : samples) values.push_back(sample.value[channel]);
+  const auto nth =
+      values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+// place: 0 the narrowest, 1 the widest.
+double WidthAt(const ModelParameter& parameter, double place) {
+  return parameter.narrow * std::pow(parameter.wide / parameter.narrow, place);
+}
+
+// The channel's factor by which the lobes alone, with scale 1, are as bright as the highlight
+// beyond the diffuse part.
+double LobeFactor(const AnalyticModel& model, int lobes, const std::vector<double>& scalars,
+                  std::span<const BrdfSample> samples, int channel, double diffuse) {
+  const double bright = Quantile(samples, channel, 1.0 - kBrighterPart);
+  double sum = 0.0, lobe_sum = 0.0;
+  for (const BrdfSample& sample : samples) {
+    if (sample.value[channel] < bright) continue;
+    sum += std::max(0.0, sample.value[channel] - diffuse);
+    lobe_sum +=
+        model.evaluate(ReflectionGeometry(sample.pair), scalars.data(), lobes)[channel] - diffuse;
+  }
+  return lobe_sum > 0.0 ? sum / lobe_sum : 1.0;
+}
+
+std::vector<double> StartAt(const AnalyticModel& model, int lobes,
+                            std::span<const BrdfSample> samples, double place) {
+  const std::vector<PlacedParameter> all = PlacedParameters(model, lobes);
+  std::vector<double> scalars(
+      static_cast<std::size_t>(model.BaseSize() + lobes * model.LobeSize()));
+  Rgb diffuse = {};
+  for (const PlacedParameter& placed : all) {
+    const ModelParameter& parameter = *placed.parameter;
+    const double width_place = placed.lobe == 0 ? place : place + kWidthOfSecond * (1.0 - place);
+    for (int c = 0; c < parameter.size; ++c) {
+      double& scalar = scalars[placed.first + static_cast<std::size_t>(c)];
+      scalar = parameter.initial;
+      if (parameter.role == FitRole::kScale) scalar = 1.0;
+      if (parameter.role == FitRole::kWidth) scalar = WidthAt(parameter, width_place);
+      if (parameter.role == FitRole::kDiffuse) {
+        diffuse[c] = Quantile(samples, c, kDarkerPart);
+        scalar = std::clamp(diffuse[c] * std::numbers::pi, parameter.lower, parameter.upper);
+      }
+    }
+  }
+  for (const PlacedParameter& placed : all) {
+    if (placed.parameter->role != FitRole::kScale) continue;
+    for (int c = 0; c < 3; ++c) {
+      const double factor = LobeFactor(model, lobes, scalars, samples, c, diffuse[c]);
+      scalars[placed.first + static_cast<std::size_t>(c)] =
+          std::clamp(std::isfinite(factor) ? factor : 1.0, kFaint, placed.parameter->upper);
+    }
+  }
+  return scalars;
+}
+
+// The scalars of `count` starts: lobes from narrow to wide, a second lobe wider than the first. The
+// diffuse albedo is that of the material's darker samples; lobes reflect what they must to have
+// the brightness of the brightest ones.
+std::vector<std::vector<double>> AnalyticStarts(const AnalyticModel& model, int lobes,
+                                                std::span<const BrdfSample> samples, int count) {
+  std::vector<std::vector<double>> starts;
+  for (int k = 0; k < count; ++k) {
+    starts.push_back(StartAt(model, lobes, samples, (k + 0.5) / count));
+  }
+  return starts;
+}
+
+// The scalars of one lobe followed by those of a second one, wider and so faint that it changes
+// next to nothing.
+std::vector<double> WithFaintLobe(const AnalyticModel& model, std::vector<double> scalars) {
+  for (const ModelParameter& parameter : model.lobe) {
+    const double value = parameter.role == FitRole::kScale   ? kFaint
+                         : parameter.role == FitRole::kWidth ? WidthAt(parameter, kWidthOfSecond)
+                                                             : parameter.initial;
+    scalars.insert(scalars.end(), static_cast<std::size_t>(parameter.size), value);
+  }
+  return scalars;
+}
+
 // A point that a stage reached.
-struct Candidate {
+struct Candidate : AnalyticFitSummary {
   std::vector<double> numbers;
-  double cost = std::numeric_limits<double>::infinity();  // per sample
-  int iterations = 0;
-  bool converged = false;
-  std::string message;
 };
 
 struct Stage {
@@ -67,9 +152,9 @@ class AnalyticFitter {
     candidate->iterations += static_cast<int>(summary.iterations.size());
     candidate->message = summary.message.substr(0, summary.message.find('\n'));
     candidate->converged = summary.termination_type == ceres::CONVERGENCE;
-    candidate->cost = summary.IsSolutionUsable() && std::isfinite(summary.final_cost)
-                          ? summary.final_cost / static_cast<double>(stage.samples.size())
-                          : std::numeric_limits<double>::infinity();
+    candidate->final_cost = summary.IsSolutionUsable() && std::isfinite(summary.final_cost)
+                                ? summary.final_cost / static_cast<double>(stage.samples.size())
+                                : std::numeric_limits<double>::infinity();
   }
 
  private:
@@ -99,9 +184,10 @@ void RunAll(const AnalyticFitter& fitter, const Stage& stage, tbb::task_arena* a
     tbb::parallel_for(std::size_t{0}, candidates->size(),
                       [&](std::size_t k) { fitter.Run(stage, &(*candidates)[k]); });
   });
-  std::stable_sort(candidates->begin(), candidates->end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  if (!std::isfinite(candidates->front().cost)) {
+  std::stable_sort(
+      candidates->begin(), candidates->end(),
+      [](const Candidate& a, const Candidate& b) { return a.final_cost < b.final_cost; });
+  if (!std::isfinite(candidates->front().final_cost)) {
     Fail("no start of the fit has a finite cost: ", candidates->front().message);
   }
 }
@@ -158,8 +244,8 @@ AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
   const Timer timer;
   const int lobes = model.lobe.empty() ? 0 : options.lobes;
   const auto first = samples.first(std::min(samples.size(), options.first_samples));
-  const int most_threads = tbb::this_task_arena::max_concurrency();
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
+  const int max_threads = tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, max_threads)
                                             : tbb::task_arena::automatic);
   std::vector<Candidate> at_hand;
   std::vector<double> scalars;
@@ -174,9 +260,8 @@ AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
                     at_hand, &arena);
     scalars = fitter.parameters().ToBoundedScalars(best.numbers);
   }
-  AnalyticFit fit{AnalyticBrdf(model, lobes, scalars), {}};
-  fit.summary = {best.cost, best.iterations, best.converged, timer.Seconds(), best.message};
-  return fit;
+  best.seconds = timer.Seconds();
+  return {AnalyticBrdf(model, lobes, scalars), best};
 }
 
 }  // namespace pbnbrdf

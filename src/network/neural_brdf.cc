@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/about.h"
 #include "network/batched_mlp.h"
 #include "network/evaluation.h"
 #include "network/safetensors.h"
@@ -55,15 +56,13 @@ NetworkShape ReadShape(const std::string& path, const SafetensorsFile& file) {
   if (output != kOutputUnit) Fail(path, ": output=", output, " is not ", kOutputUnit);
   const std::string& encoding = Require(path, file.metadata, "encoding");
   const std::string& activation = Require(path, file.metadata, "activation");
-  try {
+  return About(path, [&] {
     std::vector<int> hidden = LayerSizes(path, file);
     const int outputs = hidden.back();
     hidden.pop_back();
     return NetworkShape(ParseName(kEncodings, "encoding", encoding), std::move(hidden),
                         ParseName(kActivations, "activation", activation), outputs);
-  } catch (const Error& error) {
-    Fail(path, ": ", error.what());
-  }
+  });
 }
 
 // What SinglePrecision gives.

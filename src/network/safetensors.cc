@@ -57,6 +57,22 @@ std::map<std::string, std::string> ParseMetadata(const std::string& path, const 
 
 }  // namespace
 
+std::string ShapeText(const std::vector<std::int64_t>& shape) {
+  if (shape.empty()) return "a scalar";
+  std::string text;
+  for (std::int64_t extent : shape) text += StrCat(text.empty() ? "" : " x ", extent);
+  return text;
+}
+
+std::uint64_t ElementCount(const std::vector<std::int64_t>& shape, std::uint64_t limit) {
+  std::uint64_t count = 1;
+  for (std::int64_t extent : shape) {
+    if (extent < 1 || static_cast<std::uint64_t>(extent) > limit / count) return 0;
+    count *= static_cast<std::uint64_t>(extent);
+  }
+  return count;
+}
+
 SafetensorsFile ReadSafetensors(const std::string& path) {
   const std::string bytes = ReadFile(path, kMaxWeightFileSize);
   std::uint64_t header_size = 0;

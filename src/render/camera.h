@@ -1,7 +1,11 @@
-// camera.h: a scene's pinhole camera, from pixels to rays and from points to pixels.
+// camera.h: a scene's pinhole camera, from pixels to rays and from points to pixels, and the tiles of its
+// image.
 #pragma once
 
+#include <vector>
+
 #include "geometry.h"
+#include "pixels.h"
 
 namespace pbnbrdf {
 
@@ -29,5 +33,17 @@ class PinholeCamera {
   Vec3 origin_, forward_;
   Vec3 right_, up_;  // half of the image's sides at distance 1
 };
+
+struct Tile {
+  PixelBlock block;
+  bool empty;  // no ray through it hits a shape or a rectangle light
+};
+
+inline constexpr int kTileSize = 16;  // as pbrt's
+
+// The tiles, row by row. Conservative: a tile that is not called empty may be. A mesh is bounded by a
+// rectangle of the image, or by all of it if a vertex is not in front of the camera; a sphere by the
+// cone in which the camera sees it; both enlarged by a pixel.
+std::vector<Tile> TilesOf(const Scene& scene, const PinholeCamera& camera);
 
 }  // namespace pbnbrdf

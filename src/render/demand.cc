@@ -7,9 +7,9 @@
 #include <cmath>
 #include <optional>
 
+#include "camera.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
-#include "tiles.h"
 
 namespace pbnbrdf {
 namespace {

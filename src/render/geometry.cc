@@ -38,23 +38,6 @@ bool SolveUnitSphere(const Vec3& o, const Vec3& d, double* near, double* far) {
   return true;
 }
 
-RTCBounds SphereBounds(const Sphere& sphere) {
-  // An ellipsoid reaches as far along an axis as that row of its matrix is long.
-  const auto& [u, v, w] = sphere.to_world.axes;
-  const Vec3 reach = {std::hypot(u.x, v.x, w.x), std::hypot(u.y, v.y, w.y),
-                      std::hypot(u.z, v.z, w.z)};
-  const Vec3& o = sphere.to_world.origin;
-  const double error = kSinglePrecision * (LargestCoordinate(o) + LargestCoordinate(reach));
-  RTCBounds bounds = {};
-  bounds.lower_x = static_cast<float>(o.x - reach.x - error);
-  bounds.lower_y = static_cast<float>(o.y - reach.y - error);
-  bounds.lower_z = static_cast<float>(o.z - reach.z - error);
-  bounds.upper_x = static_cast<float>(o.x + reach.x + error);
-  bounds.upper_y = static_cast<float>(o.y + reach.y + error);
-  bounds.upper_z = static_cast<float>(o.z + reach.z + error);
-  return bounds;
-}
-
 // The nearest hit in (tnear, tfar) of the ray with a sphere, as a distance; 0: none.
 float HitDistance(const Sphere& sphere, const RTCRay& ray) {
   const Vec3 o = {ray.org_x, ray.org_y, ray.org_z}, d = {ray.dir_x, ray.dir_y, ray.dir_z};
@@ -73,7 +56,20 @@ const Sphere& SphereOf(const Arguments* args) {
 }
 
 void BoundSphere(const RTCBoundsFunctionArguments* args) {
-  *args->bounds_o = SphereBounds(SphereOf(args));
+  const Affine& to_world = SphereOf(args).to_world;
+  // An ellipsoid reaches as far along an axis as that row of its matrix is long.
+  const auto& [u, v, w] = to_world.axes;
+  const Vec3 reach = {std::hypot(u.x, v.x, w.x), std::hypot(u.y, v.y, w.y),
+                      std::hypot(u.z, v.z, w.z)};
+  const Vec3& o = to_world.origin;
+  const double error = kSinglePrecision * (LargestCoordinate(o) + LargestCoordinate(reach));
+  RTCBounds& bounds = *args->bounds_o;
+  bounds.lower_x = static_cast<float>(o.x - reach.x - error);
+  bounds.lower_y = static_cast<float>(o.y - reach.y - error);
+  bounds.lower_z = static_cast<float>(o.z - reach.z - error);
+  bounds.upper_x = static_cast<float>(o.x + reach.x + error);
+  bounds.upper_y = static_cast<float>(o.y + reach.y + error);
+  bounds.upper_z = static_cast<float>(o.z + reach.z + error);
 }
 
 void IntersectSphere(const RTCIntersectFunctionNArguments* args) {

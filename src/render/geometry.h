@@ -7,8 +7,8 @@
 
 #include <memory>
 
+#include "mesh_checks.h"
 #include "pbnbrdf/render/scene.h"
-#include "single_precision.h"
 
 namespace pbnbrdf {
 

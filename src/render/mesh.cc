@@ -1,9 +1,9 @@
 #include "pbnbrdf/render/mesh.h"
 
-#include "mesh_files.h"
+#include "base/about.h"
+#include "mesh_checks.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
-#include "single_precision.h"
 
 namespace pbnbrdf {
 namespace {
@@ -25,14 +25,12 @@ bool HasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 TriangleMesh ReadMesh(const std::string& path) {
   const std::string bytes = ReadFile(path, kMaxFileBytes);
-  try {
+  return About(path, [&] {
     TriangleMesh mesh = bytes.starts_with("ply") ? ParsePly(bytes) : ParseObj(bytes);
     if (mesh.triangles.empty()) Fail("no faces: neither PLY nor Wavefront OBJ");
     CheckTriangles(mesh);
     return mesh;
-  } catch (const Error& error) {
-    Fail(path, ": ", error.what());
-  }
+  });
 }
 
 TriangleMesh Transformed(const TriangleMesh& mesh, const Affine& map) {

@@ -1,8 +1,9 @@
 // Reads the geometry of Wavefront OBJ files.
 #include <map>
 
+#include "base/about.h"
 #include "base/text.h"
-#include "mesh_files.h"
+#include "mesh_checks.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
@@ -33,12 +34,10 @@ class ObjParser {
     while (!text.empty()) {
       const std::size_t end = text.find('\n');
       ++number;
-      try {
+      About(StrCat("line ", number), [&] {
         if (end == std::string_view::npos && !Trim(text).empty()) Fail("cut off: has no end");
         Line(Words(text.substr(0, end)));
-      } catch (const Error& error) {
-        Fail("line ", number, ": ", error.what());
-      }
+      });
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     }
     return Mesh();

@@ -24,7 +24,7 @@ inline int ArenaThreads(int threads) {
 struct SampleRange {
   std::span<const PixelBlock> blocks;
   int first, count;
-  bool empty = false;  // the blocks' tile is empty (tiles.h)
+  bool empty = false;  // the blocks' tile is empty (camera.h)
 };
 
 class PathTracer {

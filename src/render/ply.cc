@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "base/text.h"
-#include "mesh_files.h"
+#include "mesh_checks.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/names.h"
 

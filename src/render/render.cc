@@ -9,9 +9,9 @@
 #include <limits>
 #include <mutex>
 
+#include "camera.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
-#include "tiles.h"
 
 namespace pbnbrdf {
 namespace {

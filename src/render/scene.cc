@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/about.h"
 #include "base/text.h"
 #include "json_value.h"
-#include "mesh_files.h"
+#include "mesh_checks.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
-#include "single_precision.h"
 #include "sky.h"
 
 namespace pbnbrdf {
@@ -160,12 +160,11 @@ class SceneReader {
     return IndexOf(names, name);
   }
 
-  void ChangeSources() try {
+  void ChangeSources() {
     for (const auto& [name, source] : changes_.sources) {
-      scene_.materials[MaterialIndex(name)].source = source;
+      const std::size_t index = About("materials", [&] { return MaterialIndex(name); });
+      scene_.materials[index].source = source;
     }
-  } catch (const Error& error) {
-    Fail("materials: ", error.what());
   }
 
   // "type", one of the given ones; refuses keys that this type does not have.
@@ -276,12 +275,10 @@ class SceneReader {
 
 Scene ReadScene(const std::string& path, const SceneChanges& changes) {
   const std::string text = ReadFile(path, kMaxFileBytes);
-  try {
+  return About(path, [&] {
     const nlohmann::ordered_json json = ParseJson(text);
     return SceneReader(path, changes).Read(JsonValue(json, ""));
-  } catch (const Error& error) {
-    Fail(path, ": ", error.what());
-  }
+  });
 }
 
 }  // namespace pbnbrdf

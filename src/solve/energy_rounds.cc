@@ -76,7 +76,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     profile_ = AlbedoProfile(network, kRoundGrid);
     measured_ = weights;
   }
-  // What the energy term's own quadrature has to be told.
+  // A limit makes up for the error of the energy term's own quadrature, which is coarser.
   const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
   tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
@@ -95,7 +95,7 @@ void EnergyConstraints::Exchange() {
   }
 }
 
-// Unless there is one already, or no need of one.
+// Unless there is one nearby, or the albedo there is small enough.
 void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
   if (!(Largest(at.albedo) > kMaxAlbedo)) return;
   const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
@@ -111,7 +111,7 @@ double CorrectionOf(double max_albedo) {
   return std::log((std::max(max_albedo, kMaxAlbedo) + kPi) / (kMaxAlbedo + kPi));
 }
 
-// With which the energy term costs as much as all else; 0 where its cost isn't finite.
+// The weight with which the energy term costs as much as all other terms; 0 where its cost isn't finite.
 double BalancedWeight(const std::vector<EnergyStratum>& strata, Training* training) {
   Objective& validation = training->validation();
   validation.SetEnergy(0.0, {});

@@ -1,5 +1,6 @@
 #include "solve/fit_fields.h"
 
+#include "base/about.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/solve/problem_file.h"
@@ -69,12 +70,10 @@ Fields FitFields(FitProblem* problem, FitOptions* options) {
 FitSetup ReadProblem(const std::string& path) {
   FitSetup setup;
   const std::string lines = ReadFile(path, kMaxFileSize);
-  try {
+  About(path, [&] {
     FitFields(&setup.problem, &setup.options).ReadLines(lines);
     ValidateFit(setup.problem, setup.options);
-  } catch (const Error& error) {
-    Fail(path, ": ", error.what());
-  }
+  });
   return setup;
 }
 

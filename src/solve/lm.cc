@@ -27,7 +27,8 @@ constexpr double kMaxRise = 4.0;    // of the cost over the least one so far
 // least this: Ceres' default (min_lm_diagonal).
 constexpr double kMinDiagonal = 1e-6;
 
-// Whether a step is good enough, judged against a cost that may lie a few steps back.
+// Says how good a step is. It compares with a cost of up to kMaxRisingSteps steps before, so that the cost may
+// rise for a while.
 class StepJudge {
  public:
   explicit StepJudge(double cost)
@@ -35,8 +36,8 @@ class StepJudge {
 
   double least() const { return least_; }
 
-  // The decrease of the cost over the predicted one, the better of: of this step, of all since the
-  // reference. -1 where the cost isn't finite or too high for a way over a ridge.
+  // The decrease of the cost divided by the predicted one: that of this step, or of all steps since the
+  // reference if it is better. -1 where the cost isn't finite or beyond kMaxRise.
   double Quality(double cost, double predicted) const {
     if (!(cost <= kMaxRise * least_)) return -1.0;
     return std::max((current_ - cost) / predicted,

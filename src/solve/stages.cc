@@ -40,10 +40,10 @@ class Slowdown {
   std::vector<double> least_;  // so far, at each iteration
 };
 
-// What a stage ended for; kNone: for the solver's own reasons.
+// Why a stage ended; kNone: the solver ended it.
 enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };
 
-// What a slow stage wants; kNone: to go on.
+// What helps a stage that is slow; kNone: to go on.
 End Next(const Training& training, double overfit, bool is_idle) {
   if (!training.HasAllSamples() && (is_idle || overfit >= kOverfit)) return End::kWantsSamples;
   if (!is_idle) return End::kNone;

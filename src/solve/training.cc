@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "pbnbrdf/base/error.h"
 #include "problem/fit_target.h"
-#include "solve/start.h"
+#include "problem/initial_weights.h"
 
 namespace pbnbrdf {
 namespace {
@@ -15,12 +16,81 @@ namespace {
 constexpr std::size_t kValidationSamples = 4096;
 constexpr std::uint64_t kValidationSeed = 0x9e3779b97f4a7c15;
 
+// For FitProgress::heldout_error.
 constexpr std::size_t kHeldOutSamples = 32768;
 constexpr std::uint64_t kHeldOutSeed = 1;
 
-constexpr std::size_t kStochasticCostSamples = 16384;  // whose cost says how minibatches get on
+constexpr std::size_t kStochasticCostSamples =
+    16384;  // whose cost is watched while minibatches run
 constexpr std::size_t kCurvatureGrowth = 4;
-constexpr double kRoundingShare = 0.01;  // of the cost
+constexpr double kRoundingShare = 0.01;  // FitSummary::precision_limited
+
+constexpr std::size_t kStartSamples = 1024;  // on which a start is judged
+constexpr int kMaxRestarts = 5;  // in a row; then the problem is at fault, not the start
+constexpr std::uint64_t kIndexSeed = 0xbf58476d1ce4e5b9, kRestartSeed = 0x94d049bb133111eb;
+constexpr double kRoundingSpread = 1e-6;  // of a constant network in single precision
+
+// A fault of a start that others may share: the material isn't constant, but the network is and stays so,
+// as with a layer of dead units.
+constexpr std::string_view kStaysConstant =
+    "a constant network that stays one: its first layer has no gradient";
+
+// By more than rounding makes of a constant.
+bool Varies(const std::vector<Rgb>& values) {
+  return std::any_of(values.begin(), values.end(), [&](const Rgb& value) {
+    for (int c = 0; c < NetworkShape::kChannels; ++c) {
+      const double first = values.front()[c];
+      if (std::abs(value[c] - first) > kRoundingSpread * (1.0 + first)) return true;
+    }
+    return false;
+  });
+}
+
+// Why a fit can't go on from these weights; empty if it can.
+std::string_view FaultOf(const std::vector<double>& weights, const EncodedSamples& all_samples,
+                         Objective* objective) {
+  const auto samples = all_samples.first(kStartSamples);
+  const NetworkShape& shape = objective->shape();
+  double cost = 0.0;
+  std::vector<double> gradient(shape.num_weights());
+  if (!objective->Gradient(weights.data(), &cost, gradient.data())) {
+    return "the cost or its gradient isn't finite there";
+  }
+  const auto rest = gradient.begin() + shape.block_size(0);
+  const auto is_zero = [](double slope) { return slope == 0.0; };
+  if (cost == 0.0 || !std::all_of(gradient.begin(), rest, is_zero)) return "";
+  if (std::all_of(rest, gradient.end(), is_zero))
+    return "the gradient is 0 there and the cost isn't";
+  std::vector<DirectionPair> pairs;
+  std::vector<Rgb> wanted, values(samples.size());
+  for (const BrdfSample& sample : samples) {
+    pairs.push_back(sample.pair);
+    wanted.push_back(sample.value);
+  }
+  NeuralBrdf(shape, weights).EvaluateUnclipped(pairs, values);
+  return Varies(wanted) && !Varies(values) ? kStaysConstant : "";
+}
+
+// Random weights, others for each index: the first of a few that a fit can go on from. Those of a
+// constant network have to do if there are no others. Throws Error if there are none.
+std::vector<double> DrawStart(const FitProblem& problem, const EncodedSamples& samples, int index,
+                              Objective* objective, int* restarts) {
+  std::vector<double> constant;
+  for (int restart = 0; restart <= kMaxRestarts; ++restart) {
+    const std::uint64_t seed = problem.sampling.seed +
+                               static_cast<std::uint64_t>(index) * kIndexSeed +
+                               static_cast<std::uint64_t>(restart) * kRestartSeed;
+    const std::vector<double> weights =
+        InitialWeights(problem.Shape(), samples.samples(), seed, problem.network.initialization);
+    const std::string_view fault = FaultOf(weights, samples, objective);
+    if (fault.empty()) return weights;
+    if (fault == kStaysConstant && constant.empty()) constant = weights;
+    if (restart < kMaxRestarts) ++*restarts;
+  }
+  if (!constant.empty()) return constant;
+  Fail("no start: at each of ", kMaxRestarts + 1,
+       " random ones the cost isn't finite or its gradient is 0");
+}
 
 FitProblem WithoutEnergy(FitProblem problem) {
   problem.terms.SetWeight("energy", 0.0);
@@ -75,17 +145,15 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
 void Training::Start() {
   if (weights_.empty()) {
     StartAnew(0);
-  } else {
-    CheckStart(objective_.get(), samples_, weights_);
+  } else if (const auto fault = FaultOf(weights_, samples_, objective_.get()); !fault.empty()) {
+    Fail("initial_weights: ", fault);
   }
   objective_->Grow(solver_.traits.is_stochastic ? std::min(kStochasticCostSamples, samples_.size())
                                                 : samples_.size());
 }
 
 void Training::StartAnew(int index) {
-  RandomStart drawn = DrawStart(problem_, objective_.get(), samples_, index);
-  weights_ = std::move(drawn.weights);
-  summary_.restarts += drawn.restarts;
+  weights_ = DrawStart(problem_, samples_, index, objective_.get(), &summary_.restarts);
 }
 
 bool Training::MayContinue() const {

@@ -19,12 +19,10 @@ class Training {
 
   const Solver& solver() const { return solver_; }
   const FitOptions& options() const { return options_; }
-  const FitProblem& problem() const { return problem_; }
   FitSummary& summary() { return summary_; }
   std::vector<double>& weights() { return weights_; }
 
-  // On the training samples so far, and on others that no solver sees.
-  Objective& objective() { return *objective_; }
+  // On samples that no solver sees.
   Objective& validation() { return *validation_; }
 
   // Starts at the given weights, or at random ones. Throws Error if these lead nowhere.

@@ -2,9 +2,8 @@
 
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/albedo.h"
+#include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
-#include "pbnbrdf/models/diffuse.h"
-#include "pbnbrdf/models/microfacet.h"
 #include "pbnbrdf/sources/merl.h"
 
 namespace pbnbrdf {

@@ -140,7 +140,7 @@ std::vector<Texel> Draw(const NeuralBrdf& network, const std::string& name,
   return values;
 }
 
-// As glsl_source.h promises.
+// As formats.h promises.
 double Allowed(const NeuralBrdf& network, double f) {
   const Encoding encoding = network.shape().encoding();
   const bool bends = encoding == Encoding::kMerl;

@@ -13,7 +13,6 @@
 
 #include "image/images.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/image/open_image.h"
 
 namespace pbnbrdf {
 namespace {

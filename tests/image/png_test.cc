@@ -8,7 +8,6 @@
 #include "image/images.h"
 #include "image/srgb.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/image/open_image.h"
 
 namespace pbnbrdf {
 namespace {

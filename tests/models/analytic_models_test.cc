@@ -1,5 +1,6 @@
 // Every analytic model: reciprocity, signs, and the limits that its formula has.
 #include "brdf/direction_pairs.h"
+#include "models/facets.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/models/analytic.h"
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "pbnbrdf/models/diffuse.h"
+#include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/render/render.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "test_util.h"

@@ -1,5 +1,5 @@
 // Tiles that are marked as empty show nothing, in random scenes too.
-#include "tiles.h"
+#include "camera.h"
 
 #include <random>
 

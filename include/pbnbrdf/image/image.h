@@ -1,7 +1,8 @@
-// image.h: images in memory.
+// image.h: images in memory, and from files.
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace pbnbrdf {
@@ -24,5 +25,9 @@ struct Image {
   int width = 0, height = 0;
   std::vector<float> rgb;
 };
+
+// From an OpenEXR or PNG file, as its first bytes say. Throws Error as ReadExr and ReadPng do, and if it is
+// neither.
+Image OpenImage(const std::string& path);
 
 }  // namespace pbnbrdf

@@ -1,14 +1,15 @@
 // analytic.h: analytic reflectance models by name and parameters: a diffuse part, and lobes.
 //
-// The formulas are a family a header: diffuse.h, phong.h, ward.h, microfacet.h, lafortune.h, abc.h
-// and disney.h; sgd.h reads its parameters from a table. All are reciprocal and non-negative. A
-// text names a model with its parameters, colours as R/G/B or one number for all three:
+// All are reciprocal and non-negative. A text names a model with its parameters, colours as R/G/B or one
+// number for all three:
 //
 //   ggx:f0=1/0.78/0.34,alpha=0.2,rho_d=0.05
 //   ward:rho_d=0.3,rho_s=0.1,alpha_x=0.05,alpha_y=0.15
 //   phong:rho_s=0.2,n=50,rho_s_2=0.1,n_2=1000        a second lobe's parameters end with _2
 //
 // Parameters that aren't given have their initial value (model_parameter.h).
+//
+// [1] M. Ashikhmin, P. Shirley. An Anisotropic Phong BRDF Model. J. Graphics Tools 5(2), 2000.
 #pragma once
 
 #include <map>
@@ -17,9 +18,9 @@
 #include <string_view>
 #include <vector>
 
-#include "pbnbrdf/models/diffuse.h"
-#include "pbnbrdf/models/microfacet.h"
-#include "pbnbrdf/models/ward.h"
+#include "pbnbrdf/brdf/brdf.h"
+#include "pbnbrdf/brdf/lobe_widths.h"
+#include "pbnbrdf/models/model_parameter.h"
 
 namespace pbnbrdf {
 
@@ -43,7 +44,7 @@ const AnalyticModel& FindAnalyticModel(std::string_view name);
 // Whether the text is that of an analytic model, "NAME:..." or one that only misspells the name.
 bool NamesAnalyticModel(const std::string& text);
 
-class AnalyticBrdf final : public PointwiseBrdf {
+class AnalyticBrdf : public PointwiseBrdf {
  public:
   // Parameters by name, of size 1 or 3.
   using Values = std::map<std::string, std::vector<double>>;
@@ -85,6 +86,39 @@ class AnalyticBrdf final : public PointwiseBrdf {
   int lobes_;
   std::vector<double> parameters_;
   Metadata metadata_;
+};
+
+// Models with one lobe or none, as types.
+
+struct LambertBrdf final : AnalyticBrdf {
+  explicit LambertBrdf(const Rgb& rho);
+};
+
+struct OrenNayarBrdf final : AnalyticBrdf {
+  OrenNayarBrdf(const Rgb& rho, double sigma);
+};
+
+// ward_bounded. alpha: root mean square slopes along x and y.
+struct WardBrdf final : AnalyticBrdf {
+  WardBrdf(const Rgb& rho_d, const Rgb& rho_s, LobeWidths alpha);
+};
+
+// GGX over the diffuse base of [1], which receives what the facets don't reflect.
+class GgxBrdf final : public PointwiseBrdf {
+ public:
+  // alpha: widths of the distribution of facet normals. rho_d = 0 for metals.
+  GgxBrdf(const Rgb& f0, LobeWidths alpha, const Rgb& rho_d = {})
+      : f0_(f0), alpha_(alpha), rho_d_(rho_d) {}
+  bool IsIsotropic() const override { return alpha_.AreEqual(); }
+  std::string Description() const override;
+
+ protected:
+  Rgb Value(const DirectionPair& pair) const override;
+
+ private:
+  Rgb f0_;
+  LobeWidths alpha_;
+  Rgb rho_d_;
 };
 
 // A parameter of a model of so many lobes, where it stands among the scalars.

@@ -25,8 +25,6 @@ class EnergyResidual {
                  const Rgb& limit = {1.0, 1.0, 1.0})
       : sqrt_w_(std::sqrt(solid_angle)), v_(std::move(node_weights)), limit_(limit) {}
 
-  std::size_t num_nodes() const { return v_.size(); }
-
   template <typename T>
   void operator()(const T* z, T* residuals) const {
     T albedo[3] = {T(0.0), T(0.0), T(0.0)};

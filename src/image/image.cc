@@ -1,5 +1,3 @@
-#include "pbnbrdf/image/open_image.h"
-
 #include <string_view>
 
 #include "pbnbrdf/base/error.h"

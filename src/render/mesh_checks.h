@@ -1,11 +1,12 @@
-// single_precision.h: what Embree's single precision can hold, and how exact it is.
+// mesh_checks.h: what Embree's single precision can hold, how exact it is, and parts of ReadMesh.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
-#include "pbnbrdf/render/affine.h"
+#include "pbnbrdf/render/mesh.h"
 
 namespace pbnbrdf {
 
@@ -29,5 +30,13 @@ inline double LargestCoordinate(const Affine& map) {
   for (const Vec3& axis : map.axes) sum += LargestCoordinate(axis);
   return sum;
 }
+
+// Their errors don't name the file. The meshes have indices in range; CheckTriangles checks the rest.
+TriangleMesh ParseObj(std::string_view text);
+TriangleMesh ParsePly(std::string_view bytes);
+
+// Throws Error "triangle N: ..." or "vertex N: ..." if a triangle has no area, a normal has no length,
+// or a coordinate is not finite or too large.
+void CheckTriangles(const TriangleMesh& mesh);
 
 }  // namespace pbnbrdf
