@@ -15,16 +15,16 @@
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/network/network_shape.h"
 #include "sources/hdf5_handles.h"
+#include "sources/hdf5_texts.h"
 
 namespace pbnbrdf {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "HDF5 files are little-endian");
 
-constexpr std::uint64_t kFreeBlock = 16;    // bytes of a local heap's smallest free block
-constexpr std::size_t kMaxLinks = 4096;     // of a group; groups of a file
-constexpr std::size_t kMaxTexts = 1 << 16;  // bytes of an attribute
-constexpr int kMaxDepth = 6;                // of groups in groups
+constexpr std::uint64_t kFreeBlock = 16;  // bytes of a local heap's smallest free block
+constexpr std::size_t kMaxLinks = 4096;   // of a group; groups of a file
+constexpr int kMaxDepth = 6;              // of groups in groups
 constexpr std::string_view kExpected =
     "expected dense layers of Keras, each with a kernel and a bias";
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
@@ -170,27 +170,6 @@ Tensor ReadDataset(const std::string& place, const Handle& group, const std::str
   return tensor;
 }
 
-// The texts of an attribute, if it holds a list of such of a fixed size as Keras writes them; else none.
-std::vector<std::string> TextsOf(const Handle& group, const char* name) {
-  if (H5Aexists(group.get(), name) <= 0) return {};
-  const Handle attribute(H5Aopen(group.get(), name, H5P_DEFAULT), H5Aclose);
-  if (!attribute) return {};
-  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
-  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
-  if (!type || !space || H5Tget_class(type.get()) != H5T_STRING) return {};
-  if (H5Tis_variable_str(type.get()) != 0) return {};
-  const std::size_t size = H5Tget_size(type.get());
-  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
-  if (count <= 0 || size == 0 || size > kMaxTexts / static_cast<std::size_t>(count)) return {};
-  std::string bytes(size * static_cast<std::size_t>(count), '\0');
-  if (H5Aread(attribute.get(), type.get(), bytes.data()) < 0) return {};
-  std::vector<std::string> texts;
-  for (std::size_t at = 0; at < bytes.size(); at += size) {
-    texts.emplace_back(bytes.substr(at, size).c_str());
-  }
-  return texts;
-}
-
 // The links of a group to objects of its file.
 std::vector<std::string> LinksOf(const std::string& place, const Handle& group) {
   std::vector<std::string> names;
@@ -225,7 +204,8 @@ std::optional<std::string> OneOf(const std::vector<std::string>& links,
 // Finds the layers of a file: groups, however deep, with a kernel and a bias.
 class LayerFinder {
  public:
-  LayerFinder(const std::string& path, std::size_t file_size) : path_(path), size_(file_size) {}
+  LayerFinder(const std::string& path, std::string_view bytes)
+      : path_(path), size_(bytes.size()), listed_(TextsOfAttribute(bytes, "layer_names")) {}
 
   void Visit(const std::string& name, const Handle& group, int depth) {
     if (++visits_ > kMaxLinks) Fail(path_, ": more groups than a Keras file has");
@@ -235,7 +215,7 @@ class LayerFinder {
     }
     if (depth == 0) return;
     std::string kind;  // of the layers below, where no list puts them in order
-    for (const auto& [child, listed] : InOrder(group, links)) {
+    for (const auto& [child, listed] : InOrder(links)) {
       const Handle object(H5Oopen(group.get(), child.c_str(), H5P_DEFAULT), H5Oclose);
       if (!object) FailDamaged(path_);
       if (H5Iget_type(object.get()) != H5I_GROUP) continue;
@@ -244,8 +224,8 @@ class LayerFinder {
       if (layers.size() == before || listed) continue;
       const std::string this_kind = WithNumber(child).first;
       if (!kind.empty() && kind != this_kind) {
-        Fail(path_, ": layers ", kind, " and ", this_kind, ", and no list of fixed-length names, ",
-             "layer_names, says which is the first");
+        Fail(path_, ": layers ", kind, " and ", this_kind, ", and no list layer_names says ",
+             "which is the first");
       }
       kind = this_kind;
     }
@@ -254,12 +234,11 @@ class LayerFinder {
   std::vector<KerasDenseLayer> layers;
 
  private:
-  // Those that an attribute lists, in its order; if there is none, all, by number.
-  static std::vector<std::pair<std::string, bool>> InOrder(const Handle& group,
-                                                           std::vector<std::string> links) {
+  // Those that the file lists, in its order, and that they are; if there are none, all, by number.
+  std::vector<std::pair<std::string, bool>> InOrder(std::vector<std::string> links) const {
     std::vector<std::pair<std::string, bool>> order;
-    for (std::string& name : TextsOf(group, "layer_names")) {
-      if (OneOf(links, {name.c_str()})) order.emplace_back(std::move(name), true);
+    for (const std::string& name : listed_) {
+      if (OneOf(links, {name.c_str()})) order.emplace_back(name, true);
     }
     if (!order.empty()) return order;
     std::sort(links.begin(), links.end(), [](const std::string& a, const std::string& b) {
@@ -280,6 +259,7 @@ class LayerFinder {
 
   const std::string& path_;
   std::size_t size_, visits_ = 0;
+  std::vector<std::string> listed_;
 };
 
 // Where the layers are: in a whole model, in weights of Keras 3, in weights of Keras 2.
@@ -305,7 +285,7 @@ std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
   const std::string name = LayersGroup(path, file);
   const Handle group(H5Oopen(file.get(), name.c_str(), H5P_DEFAULT), H5Oclose);
   if (!group) FailDamaged(path);
-  LayerFinder finder(path, bytes.size());
+  LayerFinder finder(path, bytes);
   if (H5Iget_type(group.get()) == H5I_GROUP) {
     finder.Visit(name == "." ? "" : "/" + name, group, kMaxDepth);
   }

@@ -4,8 +4,8 @@
 //   kernel:0, bias:0   weights of Keras 2, /dense_1/dense_1/, or of a whole model, /model_weights/dense_1/...
 //   vars/0, vars/1     weights of Keras 3, /layers/dense_1/vars/
 //
-// Their order is that of the attribute layer_names, where it is a list of names of a fixed length as Keras writes
-// it. Else layers must be of one name but for a number at its end, which is then their order; none is 0.
+// Their order is that of the attribute layer_names. Where there is none, layers must be of one name but for a number
+// at its end, which is then their order; none is 0.
 // Nothing else of a file is read, and neither code nor further files that it may name.
 #pragma once
 

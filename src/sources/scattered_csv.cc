@@ -66,8 +66,9 @@ double ParseSigma(const TextTable& table, const Columns& columns) {
   double sum = 0.0;
   for (std::size_t column : columns.sigmas) {
     const double sigma = table.Number(column);
-    if (sigma < 0.0)
+    if (sigma < 0.0) {
       Fail(table.Place(), ", ", table.names()[column], ": ", sigma, "; must be >= 0");
+    }
     sum += sigma;
   }
   return sum / static_cast<double>(columns.sigmas.size());

@@ -13,6 +13,7 @@ constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::string_view kBlanks = " \t";
 constexpr std::string_view kMissing[] = {"", "nan", "-nan", "na", "n/a"};
+constexpr std::size_t kMaxMissing = 4;  // letters
 
 // Where the first cell of `line` ends; a separator between quotes ends none.
 std::size_t CellEnd(std::string_view line, std::string_view separators) {
@@ -116,6 +117,7 @@ void TextTable::RequireCells(std::size_t count, std::string_view what) const {
 }
 
 bool TextTable::IsMissing(std::size_t column) const {
+  if (cells_of_line_[column].size() > kMaxMissing) return false;
   const std::string cell = LowerCase(cells_of_line_[column]);
   return std::find(std::begin(kMissing), std::end(kMissing), cell) != std::end(kMissing);
 }

@@ -275,14 +275,21 @@ TEST_F(Cli, ExportWritesEveryFormat) {
   EXPECT_THAT(help, HasSubstr("npy | h5 | merl | csv | c | glsl | mitsuba | onnx"));
   EXPECT_EQ(NeuralBrdf::Read(Path("x_weights.safetensors")).weights(),
             NeuralBrdf::Read(network).weights());
-  // The CSV names the directions that its values are at.
-  const Result values =
-      Run("eval --material=" + network + " --directions=" + Path("x.csv") + " --out=-");
-  const std::vector<std::string> row = Split(Split(values.out, '\n')[1000], ',');
-  ASSERT_EQ(row.size(), 10u);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_EQ(ParseNumber("written", row[4 + c]), ParseNumber("computed", row[7 + c]));
+  // The CSV names the directions that its values are at; they alone are evaluated again.
+  const auto written = ReadCsvRows(Path("x.csv"));
+  std::string pairs = "theta_i,phi_i,theta_o,phi_o\n";
+  for (const auto& row : written) {
+    pairs += row[0] + "," + row[1] + "," + row[2] + "," + row[3] + "\n";
   }
+  WriteBytes(Path("pairs.csv"), pairs);
+  const std::string eval = "eval --material=" + network + " --directions=";
+  ASSERT_EQ(Run(eval + Path("pairs.csv") + " --out=" + Path("values.csv")).status, 0);
+  const auto computed = ReadCsvRows(Path("values.csv"));
+  ASSERT_EQ(computed.size(), written.size());
+  for (std::size_t c = 4; c < 7; ++c) {
+    EXPECT_EQ(ParseNumber("written", written[1000][c]), ParseNumber("computed", computed[1000][c]));
+  }
+  ExpectError(eval + Path("x.csv") + " --out=" + Path("out"), 1, "there is a column r already");
   EXPECT_THAT(Run("export --fit=" + network + " --format=c --name=paint --out=-").out,
               HasSubstr("paint_eval("));
 }
@@ -411,6 +418,35 @@ TEST_F(Cli, EvalTakesTheDialectsOfText) {
   EXPECT_EQ(tabs.out, StrCat("theta_i\tphi_i\ttheta_o\tphi_o\tnote\tr\tg\tb\n0\t0\t0\t0\t\t", f,
                              "\t", f, "\t", f, "\n"));
   EXPECT_EQ(tabs.err, "pbnbrdf: 1 rows that lack a direction are left out\n");
+}
+
+TEST_F(Cli, EvalReadsDirectionsOfOtherPrograms) {
+  PBNBRDF_REFERENCE_FILE(folder, "faults/directions_csv");
+  const auto rows = [&](const std::string& csv) {
+    const Result result =
+        Run("eval --material=builtin:satin-gold --out=- --directions='" + csv + "'");
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::vector<std::string> values;
+    for (const std::string& row : Split(result.out, '\n')) {
+      const std::vector<std::string> cells = Split(row, ',');
+      if (cells.size() == 7) values.push_back(cells[4]);
+    }
+    return values;
+  };
+  WriteBytes(Path("radians.csv"),
+             StrCat("theta_i,phi_i,theta_o,phi_o\n", kPi / 4, ",0,", kPi / 6, ",", kPi, "\n",
+                    kPi / 3, ",0,", kPi / 4, ",", kPi / 2, "\n"));
+  const auto radians = rows(Path("radians.csv")), degrees = rows(folder + "/deg_columns.csv");
+  ASSERT_EQ(degrees.size(), 3u);
+  for (int k : {1, 2}) {
+    EXPECT_NEAR(ParseNumber("r", degrees[k]), ParseNumber("r", radians[k]), 1e-4) << k;
+  }
+  EXPECT_EQ(rows(folder + "/q_bom.csv").size(), 2u);
+  const auto signed_theta = rows(folder + "/q_negtheta.csv");
+  EXPECT_NEAR(ParseNumber("r", signed_theta[1]), ParseNumber("r", signed_theta[2]), 1e-9);
+  ExpectError("eval --material=builtin:satin-gold --out=- --directions='" + folder +
+                  "/deg_in_rad_columns.csv'",
+              1, "theta_i is 45 radians");
 }
 
 TEST_F(Cli, BadDirectionsAreNamed) {

@@ -212,29 +212,37 @@ TEST(NbrdfFiles, NetworksThatDontFitTogetherAreNamed) {
               HasSubstr("a_fc2.npy: name the first layer's file, ...fc1.npy"));
 }
 
-// A network's layers as groups of other names; names holds those of the groups, in order.
+// The names as an attribute of a group; each of `length` bytes, or H5T_VARIABLE.
+void AddNames(hid_t file, const std::string& group_name, std::vector<std::string> names,
+              std::size_t length) {
+  std::string fixed;
+  std::vector<const char*> variable;
+  for (std::string& name : names) {
+    if (length != H5T_VARIABLE) name.resize(length);
+    fixed += name;
+    variable.push_back(name.c_str());
+  }
+  const hid_t type = H5Tcopy(H5T_C_S1), group = H5Gopen2(file, group_name.c_str(), H5P_DEFAULT);
+  H5Tset_size(type, length);
+  const hsize_t count = names.size();
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t attribute = H5Acreate2(group, "layer_names", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  const void* data = fixed.data();
+  if (length == H5T_VARIABLE) data = variable.data();
+  H5Awrite(attribute, type, data);
+  H5Aclose(attribute), H5Sclose(space), H5Gclose(group), H5Tclose(type);
+}
+
+// A network's layers as groups of other names, which stand in order; length: of their list, 0 for none.
 void WriteLayers(const std::string& path, const Arrays& arrays, const std::string& parent,
                  const std::vector<std::string>& names, const std::string& kernel,
-                 const std::string& bias, bool listed) {
+                 const std::string& bias, std::size_t length) {
   H5Writer file(path);
   for (std::size_t k = 0; k < names.size(); ++k) {
     file.Add(parent + names[k] + kernel, arrays.at(StrCat("fc", k + 1)));
     file.Add(parent + names[k] + bias, arrays.at(StrCat("b", k + 1)));
   }
-  if (!listed) return;
-  constexpr std::size_t kLength = 16;
-  std::string texts;
-  for (std::string name : names) {
-    name.resize(kLength);
-    texts += name;
-  }
-  const hid_t type = H5Tcopy(H5T_C_S1), group = H5Gopen2(file.file(), parent.c_str(), H5P_DEFAULT);
-  H5Tset_size(type, kLength);
-  const hsize_t count = names.size();
-  const hid_t space = H5Screate_simple(1, &count, nullptr);
-  const hid_t attribute = H5Acreate2(group, "layer_names", type, space, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(attribute, type, texts.data());
-  H5Aclose(attribute), H5Sclose(space), H5Gclose(group), H5Tclose(type);
+  if (length > 0) AddNames(file.file(), parent, names, length);
 }
 
 TEST(NbrdfFiles, LayersAreFoundWhateverTheirNames) {
@@ -245,22 +253,25 @@ TEST(NbrdfFiles, LayersAreFoundWhateverTheirNames) {
   const std::vector<double> wanted = ReadNbrdf(path).weights();
   using Names = std::vector<std::string>;
   const auto read = [&](const std::string& parent, const Names& names, const std::string& kernel,
-                        const std::string& bias, bool listed) {
-    WriteLayers(path, arrays, parent, names, kernel, bias, listed);
+                        const std::string& bias, std::size_t length) {
+    WriteLayers(path, arrays, parent, names, kernel, bias, length);
     return ReadNbrdf(path).weights();
   };
   const Names numbers = {"dense_9", "dense_10", "dense_11"},
               first = {"dense", "dense_1", "dense_2"};
-  EXPECT_EQ(read("/", numbers, "/a/kernel:0", "/a/bias:0", false), wanted);
-  EXPECT_EQ(read("/model_weights/", first, "/dense/kernel:0", "/dense/bias:0", false), wanted);
-  EXPECT_EQ(read("/model_weights/", first, "/m/dense/kernel", "/m/dense/bias", true), wanted);
-  EXPECT_EQ(read("/layers/", first, "/vars/0", "/vars/1", false), wanted);
-  const Names words = {"one", "two", "three"};
-  EXPECT_EQ(read("/", words, "/one/kernel:0", "/one/bias:0", true), wanted);
-  EXPECT_THAT(ErrorOf([&] { read("/", words, "/one/kernel:0", "/one/bias:0", false); }),
-              HasSubstr("x.h5: layers one and three, and no list of fixed-length names"));
+  EXPECT_EQ(read("/", numbers, "/a/kernel:0", "/a/bias:0", 0), wanted);
+  EXPECT_EQ(read("/model_weights/", first, "/dense/kernel:0", "/dense/bias:0", 0), wanted);
+  EXPECT_EQ(read("/model_weights/", first, "/m/dense/kernel", "/m/dense/bias", 8), wanted);
+  EXPECT_EQ(read("/layers/", first, "/vars/0", "/vars/1", 0), wanted);
+  const Names words = {"one", "two", "three"}, backwards = {"dense_3", "dense_2", "dense_1"};
+  for (const Names& names : {words, backwards}) {
+    EXPECT_EQ(read("/", names, "/one/kernel:0", "/one/bias:0", 7), wanted);
+    EXPECT_EQ(read("/", names, "/one/kernel:0", "/one/bias:0", H5T_VARIABLE), wanted);
+  }
+  EXPECT_THAT(ErrorOf([&] { read("/", words, "/one/kernel:0", "/one/bias:0", 0); }),
+              HasSubstr("x.h5: layers one and three, and no list layer_names says"));
   // By content, under another name.
-  read("/", words, "/one/kernel:0", "/one/bias:0", true);
+  read("/", words, "/one/kernel:0", "/one/bias:0", H5T_VARIABLE);
   std::filesystem::rename(path, folder / "weights");
   EXPECT_EQ(OpenNetwork(folder / "weights").weights(), wanted);
 }
