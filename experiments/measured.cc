@@ -2,7 +2,8 @@
 // pictures.
 #include <cstdio>
 #include <filesystem>
-#include <optional>
+#include <numbers>
+#include <random>
 
 #include "curves.h"
 #include "experiment.h"
@@ -37,7 +38,7 @@ struct Options {
   std::string networks, scene = "problems/scenes/sphere.json", environment;
   bool left_out = true, pictures = true;
   int film_width = 256, samples_per_pixel = 64, threads = 0;
-  std::uint64_t samples = 50000, seed = 1;
+  std::uint64_t samples = 4000, seed = 1;
 };
 
 Fields FieldsOf(Options* o) {
@@ -50,32 +51,49 @@ Fields FieldsOf(Options* o) {
   fields.Add(Switch("pictures", &o->pictures, "render pictures"));
   fields.Add(Integer("film_width", &o->film_width, AtLeast(kSsimWindow), "pixels of each picture"));
   fields.Add(Integer("samples_per_pixel", &o->samples_per_pixel, AtLeast(1), "of each picture"));
-  fields.Add(Integer("samples", &o->samples, AtLeast(1), "directions that errors are measured at"));
+  fields.Add(Integer("samples", &o->samples, AtLeast(1),
+                     "directions at each incident angle, to measure errors at"));
   fields.Add(Integer("seed", &o->seed, AtLeast(0), "of the fits"));
   fields.Add(Integer("threads", &o->threads, AtLeast(0), "0: one for each core"));
   return fields;
 }
 
 constexpr std::uint64_t kMeasureSeed = 1;
+constexpr std::size_t kHeldOut = 50000;
 
 double ErrorAt(const std::vector<BrdfSample>& samples, const Brdf& fit) {
   return MeasureErrors(samples, fit).mean_abs_log_error;
 }
 
-// Samples at one incident angle.
+// Samples at an incident angle: theta_h uniform up to 90 degrees, as in eq. 6, and any azimuth.
 std::vector<BrdfSample> SamplesAtAngle(const Brdf& material, double theta_i, std::size_t count) {
+  std::mt19937_64 random(kMeasureSeed);
+  const auto uniform = [&] { return (static_cast<double>(random() >> 32) + 0.5) * 0x1p-32; };
+  const Vec3 wi = FromSpherical(theta_i, 0.0);
   std::vector<DirectionPair> pairs;
-  for (const BrdfSample& sample : HeldOutSamples(material, count, kMeasureSeed)) {
-    const Vec3& wi = sample.pair.wi;
-    pairs.push_back({FromSpherical(theta_i, std::atan2(wi.y, wi.x)), sample.pair.wo});
+  while (pairs.size() < count) {
+    const double theta_h = 0.5 * std::numbers::pi * uniform();
+    const Vec3 h = FromSpherical(theta_h, 2.0 * std::numbers::pi * uniform());
+    const DirectionPair pair = {wi, 2.0 * Dot(wi, h) * h - wi};
+    if (material.IsKnown(pair)) pairs.push_back(pair);
   }
   std::vector<Rgb> values(pairs.size());
   material.Evaluate(pairs, values);
   std::vector<BrdfSample> samples;
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    if (material.IsKnown(pairs[n])) samples.push_back({pairs[n], values[n]});
-  }
+  for (std::size_t n = 0; n < pairs.size(); ++n) samples.push_back({pairs[n], values[n]});
   return samples;
+}
+
+// At all measured angles that the material is known at.
+std::vector<BrdfSample> SamplesAtAngles(const RglBrdf& material, std::size_t count) {
+  std::vector<BrdfSample> all;
+  for (double theta_i : material.IncidentAngles()) {
+    const Vec3 wi = FromSpherical(theta_i, 0.0);
+    if (!material.IsKnown({wi, {0.0, 0.0, 1.0}})) continue;
+    const auto samples = SamplesAtAngle(material, theta_i, count);
+    all.insert(all.end(), samples.begin(), samples.end());
+  }
+  return all;
 }
 
 class Study {
@@ -122,8 +140,8 @@ class Study {
 
   void AddErrors(const std::string& name, const RglBrdf& material, const Brdf* published,
                  const Fit& fit) {
-    const auto at_measured = SamplesAtMeasured(material, options_.samples, kMeasureSeed);
-    const auto all = HeldOutSamples(material, options_.samples, kMeasureSeed);
+    const auto at_measured = SamplesAtAngles(material, options_.samples);
+    const auto all = HeldOutSamples(material, kHeldOut, kMeasureSeed);
     const double ours = ErrorAt(at_measured, fit.network);
     const double theirs = published ? ErrorAt(at_measured, *published) : NAN;
     measured_ratios_.push_back(ours / theirs);
@@ -138,7 +156,7 @@ class Study {
     const std::vector<double> angles = material.IncidentAngles();
     for (std::size_t k = 1; k + 1 < angles.size(); ++k) {
       const RglBrdf rest = material.WithoutIncidentAngle(k);
-      const auto samples = SamplesAtAngle(material, angles[k], options_.samples / 2);
+      const auto samples = SamplesAtAngle(material, angles[k], options_.samples);
       const Fit fit = FitTo(rest);
       const double theirs = ErrorAt(samples, rest), ours = ErrorAt(samples, fit.network);
       left_out_ratios_.push_back(ours / theirs);

@@ -111,10 +111,17 @@ void ScatteredBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs,
   }
 }
 
+double ScatteredBrdf::SquaredDistance(const DirectionPair& pair) const {
+  return tree_->Nearest(ScatteredPlace(pair, data_.isotropic), 1).front().squared_distance;
+}
+
 bool ScatteredBrdf::IsKnown(const DirectionPair& pair) const {
-  if (!pair.AboveHorizon()) return false;
-  const auto near = tree_->Nearest(ScatteredPlace(pair, data_.isotropic), 1);
-  return near.front().squared_distance <= kReach * kReach;
+  return pair.AboveHorizon() && SquaredDistance(pair) <= kReach * kReach;
+}
+
+double ScatteredBrdf::Certainty(const DirectionPair& pair) const {
+  constexpr double kHalf = kReach / 4.0;
+  return 1.0 / (1.0 + SquaredDistance(pair) / (kHalf * kHalf));
 }
 
 std::string ScatteredBrdf::Description() const {

@@ -9,6 +9,7 @@
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/brdf/scattered.h"
+#include "problem/gap_filler.h"
 
 namespace pbnbrdf {
 namespace {
@@ -109,10 +110,7 @@ SampleStream::SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles,
 }
 
 void SampleStream::AddInterpolated() {
-  ScatteredData data;
-  data.isotropic = brdf_.IsIsotropic();
-  data.samples = measured_;
-  const ScatteredBrdf interpolated(std::move(data));
+  const GapFiller filler(measured_, brdf_.IsIsotropic());
   const std::size_t part = measured_.size();
   while (measured_.size() < kFewMeasurements) {
     measured_.insert(measured_.end(), measured_.begin(),
@@ -123,9 +121,8 @@ void SampleStream::AddInterpolated() {
     const DirectionPair pair = DrawPair();
     if (pair.AboveHorizon()) pairs.push_back(pair);
   }
-  std::vector<Rgb> values(pairs.size());
-  interpolated.Evaluate(pairs, values);
-  for (std::size_t n = 0; n < pairs.size(); ++n) measured_.push_back({pairs[n], values[n]});
+  const std::vector<BrdfSample> filled = filler.At(pairs);
+  measured_.insert(measured_.end(), filled.begin(), filled.end());
 }
 
 DirectionPair SampleStream::DrawPair() {

@@ -53,6 +53,9 @@ class ScatteredBrdf final : public Brdf {
   bool IsKnown(const DirectionPair& pair) const override;
   static constexpr double kReach = 0.2;
 
+  // 1 at a measurement, 1/2 at a quarter of kReach from the nearest one.
+  double Certainty(const DirectionPair& pair) const override;
+
   bool IsIsotropic() const override { return data_.isotropic; }
   bool IsReciprocal() const override { return true; }
   std::vector<BrdfSample> Measurements() const override { return data_.samples; }
@@ -60,6 +63,8 @@ class ScatteredBrdf final : public Brdf {
   std::string Description() const override;
 
  private:
+  double SquaredDistance(const DirectionPair& pair) const;  // to the nearest measurement
+
   ScatteredData data_;
   std::vector<std::size_t> samples_;  // of the tree's points: which sample each stands for
   std::shared_ptr<const PointTree> tree_;

@@ -41,8 +41,8 @@ enum class SampleSet { kTraining, kHeldOut };
 // Of a Brdf that is a list of measurements these are the samples, in a random order. One in 8 is held
 // out, whatever the seed, together with those at the same place (scattered.h): repeated, reciprocal
 // and, if isotropic, mirrored ones. To three training samples comes a fourth at angles drawn as those
-// of any other Brdf, with the value that the training samples interpolate to there: what is measured
-// along a few lines only leaves wide gaps, in which networks that nothing holds grow by orders of
+// of any other Brdf, with the value that a model fitted to the training samples
+// and they themselves suggest there (gap_filler.h): what is measured along a few lines only leaves wide gaps, in which networks that nothing holds grow by orders of
 // magnitude. Where there are fewer than 3000, all are repeated until they aren't, so that gaps are
 // filled, too, without counting more than measurements.
 class SampleStream {
