@@ -11,6 +11,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+TEST(Text, LowerCaseIsThatOfAscii) { EXPECT_EQ(LowerCase("Az_9\xc3\x84"), "az_9\xc3\x84"); }
+
 TEST(Text, SplitsAndTrims) {
   EXPECT_THAT(Split(" a, b ,,c\r", ','), ElementsAre("a", "b", "", "c"));
   EXPECT_THAT(Split("", ','), ElementsAre(""));

@@ -88,5 +88,10 @@ TEST(Cie, TooLittleOfTheRangeIsRefused) {
               testing::HasSubstr("wavelengths of 500 to 700 nm; a colour needs 430 to 660"));
 }
 
+TEST(Cie, WhiteIsWhite) {
+  const std::vector<double> xyz = {0.9505, 1.0, 1.089};  // D65
+  for (double channel : WeightedSum(XyzToRgb(), xyz)) EXPECT_NEAR(channel, 1.0, 1e-3);
+}
+
 }  // namespace
 }  // namespace pbnbrdf
