@@ -101,16 +101,28 @@ void Shuffle(std::vector<BrdfSample>* samples, std::mt19937_64* random) {
 
 SampleStream::SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed)
     : brdf_(brdf), set_(set), angles_(std::move(angles)), random_(seed) {
-  const std::vector<BrdfSample> all = brdf.Measurements();
+  Begin();
+}
+
+SampleStream SampleStream::WithSeed(std::uint64_t seed) const {
+  SampleStream other = *this;
+  other.random_.seed(seed);
+  other.next_ = 0;
+  other.Begin();
+  return other;
+}
+
+void SampleStream::Begin() {
+  const std::vector<BrdfSample> all = brdf_.Measurements();
   if (all.empty()) return;
-  measured_ = PartOf(all, set, brdf.IsIsotropic());
+  measured_ = PartOf(all, set_, brdf_.IsIsotropic());
   if (measured_.empty()) Fail("too little data: a single measurement");
-  if (set == SampleSet::kTraining) AddInterpolated();
+  if (set_ == SampleSet::kTraining) AddInterpolated();
   Shuffle(&measured_, &random_);
 }
 
 void SampleStream::AddInterpolated() {
-  const GapFiller filler(measured_, brdf_.IsIsotropic());
+  if (!filler_) filler_ = std::make_shared<GapFiller>(measured_, brdf_.IsIsotropic());
   const std::size_t part = measured_.size();
   while (measured_.size() < kFewMeasurements) {
     measured_.insert(measured_.end(), measured_.begin(),
@@ -121,7 +133,7 @@ void SampleStream::AddInterpolated() {
     const DirectionPair pair = DrawPair();
     if (pair.AboveHorizon()) pairs.push_back(pair);
   }
-  const std::vector<BrdfSample> filled = filler.At(pairs);
+  const std::vector<BrdfSample> filled = filler_->At(pairs);
   measured_.insert(measured_.end(), filled.begin(), filled.end());
 }
 

@@ -119,13 +119,13 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
       stream_(*target_, SampleSet::kTraining, problem.sampling.Angles(), problem.sampling.seed),
       max_samples_(std::min<std::size_t>(problem.sampling.samples, stream_.most())),
       samples_(*problem.network.encoding),
-      validation_samples_(*problem.network.encoding,
-                          DrawSamples(*target_, SampleSet::kTraining, problem.sampling.Angles(),
-                                      kValidationSamples, problem.sampling.seed + kValidationSeed)),
+      validation_samples_(*problem.network.encoding),
       heldout_samples_(*problem.network.encoding),
       strata_(EqualStrata(problem)),
       curvature_samples_(options.schedule.curvature_samples),
       weights_(options.initial_weights) {
+  SampleStream validation_stream = stream_.WithSeed(problem.sampling.seed + kValidationSeed);
+  DrawInto(&validation_stream, kValidationSamples, &validation_samples_);
   const std::size_t first = std::min<std::size_t>(options.schedule.first_samples, max_samples_);
   DrawInto(&stream_, solver_.traits.is_stochastic ? max_samples_ : first, &samples_);
   objective_ = MakeObjective(problem_, options.precision, samples_,

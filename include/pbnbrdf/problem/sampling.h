@@ -12,6 +12,8 @@
 
 namespace pbnbrdf {
 
+class GapFiller;
+
 // How theta_h is drawn; theta_d in [0, pi/2) and phi_d in [0, 2 pi) are uniform. phi_h = 0 of an
 // isotropic Brdf, else uniform in [0, 2 pi).
 enum class Sampling {
@@ -50,6 +52,9 @@ class SampleStream {
   // brdf must outlive this.
   SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed);
 
+  // As if made with another seed, without what doesn't depend on it being done again.
+  SampleStream WithSeed(std::uint64_t seed) const;
+
   // Appends the next `count` samples, fewer if there are no more. Throws Error if next to no angles
   // are known (fewer than 1 in 10,000).
   void Draw(std::size_t count, std::vector<BrdfSample>* samples);
@@ -58,6 +63,7 @@ class SampleStream {
   std::size_t most() const;
 
  private:
+  void Begin();
   void AddInterpolated();
   DirectionPair DrawPair();
   void MoveToMeasured(DirectionPair* pair);
@@ -67,8 +73,9 @@ class SampleStream {
   SampleSet set_;
   SampleAngles angles_;
   std::mt19937_64 random_;
-  std::vector<BrdfSample> measured_;  // of the set, and interpolated ones, shuffled
-  std::size_t next_ = 0;              // of them
+  std::shared_ptr<const GapFiller> filler_;  // of measured_; null where none is needed
+  std::vector<BrdfSample> measured_;         // of the set, and interpolated ones, shuffled
+  std::size_t next_ = 0;                     // of them
 };
 
 // The first `count` samples of a SampleStream, or all if there are fewer.
