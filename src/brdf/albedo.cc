@@ -96,7 +96,12 @@ class RefinedAlbedo {
   // By the first quadrature, which also tells whether single precision is good enough here.
   Estimate At(const Vec3& wi) const {
     Estimate estimate = {.albedo = DirectionalAlbedo(brdf_, wi, coarse_), .error = {}};
-    for (int c = 0; c < 3; ++c) estimate.error[c] = kCoarseError * estimate.albedo[c];
+    // Another grid meets ripples at other places.
+    estimate.error =
+        Difference(DirectionalAlbedo(single_ ? *single_ : brdf_, wi, other_), estimate.albedo);
+    for (int c = 0; c < 3; ++c) {
+      estimate.error[c] = std::max(estimate.error[c], kCoarseError * estimate.albedo[c]);
+    }
     if (single_) {
       const Rgb single = DirectionalAlbedo(*single_, wi, coarse_);
       estimate.is_exact = !(Largest(Difference(single, estimate.albedo)) <= kRounding);
@@ -155,7 +160,7 @@ class RefinedAlbedo {
   const Brdf& brdf_;
   const std::unique_ptr<const Brdf> single_;  // or null
   const AlbedoGrid& grid_;
-  AlbedoQuadrature coarse_ = AlbedoQuadrature(64, 32);
+  AlbedoQuadrature coarse_ = AlbedoQuadrature(64, 32), other_ = AlbedoQuadrature(45, 32);
   std::vector<AlbedoQuadrature> levels_;
 };
 

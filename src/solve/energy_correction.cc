@@ -1,5 +1,7 @@
 #include "solve/energy_correction.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -16,9 +18,10 @@ constexpr double kPi = std::numbers::pi;
 constexpr AlbedoGrid kGrid = {.angles = 160, .n_phi = 64};
 constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
 constexpr double kMinStep = 1e-7;   // of log(1 + f)
-constexpr int kMaxSteps = 50, kMaxNewtonSteps = 50;
-// After so many steps the whole channel is lowered. Fits that end by time need up to 6.
-constexpr int kLocalSteps = 16;
+constexpr double kWatched = 0.03;   // of an albedo below the bound, that a step may raise above it
+constexpr int kMaxProfiles = 30, kMaxSteps = 60, kMaxNewtonSteps = 50;
+// After so many steps the whole channel is lowered. Fits that end by time need up to 10 steps.
+constexpr int kLocalSteps = 24, kLocalRounds = 8;
 constexpr double kRidge = 1e-6;  // of the mean square of the features
 constexpr double kMaxZ = 30.0;   // where the output is clamped (expressions-inl.h)
 
@@ -57,20 +60,19 @@ Rows RowsAt(const NetworkShape& shape, const std::vector<double>& weights,
   return rows;
 }
 
-// Pairs at uniform angles.
+// Pairs at uniform angles, all of them different: the additive recurrence of the four-dimensional golden
+// ratio. On a grid the correction would hide between its nodes.
 std::vector<DirectionPair> TypicalPairs(bool isotropic) {
-  constexpr int kSteps = 12;
+  constexpr int kCount = 2048;
+  constexpr double kSteps[] = {0.8566748838545029, 0.733891856627126, 0.6287067210378087,
+                               0.5385972572236101};
   std::vector<DirectionPair> pairs;
-  for (int h = 0; h < kSteps; ++h) {
-    for (int d = 0; d < kSteps; ++d) {
-      for (int p = 0; p < kSteps; ++p) {
-        const double turn = isotropic ? 0.0 : 2.0 * kPi * ((7 * h + 5 * d + p) % kSteps) / kSteps;
-        pairs.push_back(FromAngles({.theta_h = 0.5 * kPi * (h + 0.5) / kSteps,
-                                    .theta_d = 0.5 * kPi * (d + 0.5) / kSteps,
-                                    .phi_d = kPi * (p + 0.5) / kSteps,
-                                    .phi_h = turn}));
-      }
-    }
+  for (int n = 1; n <= kCount; ++n) {
+    const auto u = [&](int k) { return std::fmod(n * kSteps[k], 1.0); };
+    pairs.push_back(FromAngles({.theta_h = 0.5 * kPi * u(0),
+                                .theta_d = 0.5 * kPi * u(1),
+                                .phi_d = kPi * u(2),
+                                .phi_h = isotropic ? 0.0 : 2.0 * kPi * u(3)}));
   }
   return pairs;
 }
@@ -114,8 +116,10 @@ VectorXd CheapestDirection(const Rows& rows, const std::vector<AlbedoNode>& node
 
 class Corrector {
  public:
-  Corrector(const NetworkShape& shape, std::vector<double>* weights)
+  Corrector(const NetworkShape& shape, const std::function<bool()>& has_time,
+            std::vector<double>* weights)
       : shape_(shape),
+        has_time_(has_time),
         weights_(weights),
         typical_(TypicalPairs(IsIsotropic(shape.encoding()))),
         before_(*weights) {}
@@ -125,45 +129,83 @@ class Corrector {
     // In single precision until nothing is left to do; then in double.
     for (bool exactly : {false, true}) {
       const double bound = exactly ? kMaxAlbedo : kMaxAlbedo - kRounding;
-      for (int k = 0; k < kMaxSteps; ++k) {
+      for (int k = 0; k < kMaxProfiles; ++k) {
         const std::vector<IncidentAlbedo> profile = Profile(exactly);
         largest = Largest(LargestAlbedos(profile));
         if (!(largest > bound)) break;
-        for (int c = 0; c < shape_.num_outputs(); ++c) Lower(profile, c, bound, k);
+        LowerAll(profile, bound, k);
       }
     }
     return {MeanChange(), largest};
   }
 
  private:
+  // A direction whose albedo may matter, as the profile has it and by a quadrature of fewer nodes.
+  struct Watched {
+    IncidentAlbedo at;
+    Rgb own;
+  };
+
   std::vector<IncidentAlbedo> Profile(bool exactly) const {
     const NeuralBrdf exact(shape_, *weights_);
-    if (exactly) return AlbedoProfile(exact, kGrid);
+    if (exactly) return AlbedoProfile(exact, {});  // as MeasureEnergy does
     return AlbedoProfile(*exact.SinglePrecision(), kGrid);
   }
 
-  void Lower(const std::vector<IncidentAlbedo>& profile, int channel, double bound, int number) {
-    const IncidentAlbedo& there = *std::max_element(
-        profile.begin(), profile.end(),
-        [channel](const auto& a, const auto& b) { return a.albedo[channel] < b.albedo[channel]; });
+  // Lowers the largest albedo again and again. In between only the large ones are measured anew.
+  void LowerAll(const std::vector<IncidentAlbedo>& profile, double bound, int number) {
+    std::vector<Watched> watched;
+    for (const IncidentAlbedo& at : profile) {
+      if (Largest(at.albedo) > bound - kWatched) watched.push_back({at, {}});
+    }
+    Measure(&watched, /*anew=*/false);
+    const bool locally = number == 0 || (number < kLocalRounds && has_time_());
+    for (int step = 0; step < kMaxSteps; ++step) {
+      bool lowered = false;
+      for (int c = 0; c < shape_.num_outputs(); ++c) {
+        lowered |= LowerLargest(watched, c, bound, number, locally && step < kLocalSteps);
+      }
+      if (!lowered) return;
+      Measure(&watched, /*anew=*/true);
+    }
+  }
+
+  // By the quadrature of fewer nodes; anew: what has changed by it is applied to the albedos.
+  void Measure(std::vector<Watched>* watched, bool anew) const {
+    const std::unique_ptr<Brdf> network = NeuralBrdf(shape_, *weights_).SinglePrecision();
+    tbb::parallel_for(std::size_t{0}, watched->size(), [&](std::size_t k) {
+      Watched& w = (*watched)[k];
+      const Vec3 wi = FromSpherical(w.at.theta_i, w.at.phi_i);
+      const Rgb own = DirectionalAlbedo(*network, wi, quadrature_);
+      for (int c = 0; c < 3 && anew; ++c) w.at.albedo[c] *= own[c] / w.own[c];
+      w.own = own;
+    });
+  }
+
+  // false if it isn't above the bound.
+  bool LowerLargest(const std::vector<Watched>& watched, int channel, double bound, int number,
+                    bool locally) {
+    const IncidentAlbedo& there =
+        std::max_element(watched.begin(), watched.end(), [channel](const auto& a, const auto& b) {
+          return a.at.albedo[channel] < b.at.albedo[channel];
+        })->at;
     const double albedo = there.albedo[channel];
-    if (!(albedo > bound)) return;
-    static const auto quadrature = AlbedoQuadrature::OnMerlRows(2, 128);
+    if (!(albedo > bound)) return false;
     const std::vector<AlbedoNode> nodes =
-        quadrature.Nodes(FromSpherical(there.theta_i, there.phi_i));
+        quadrature_.Nodes(FromSpherical(there.theta_i, there.phi_i));
     std::vector<DirectionPair> pairs;
     for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
     const Rows rows = RowsAt(shape_, *weights_, pairs, channel);
     VectorXd direction = VectorXd::Unit(rows.features.cols(), rows.features.cols() - 1);
-    double more = std::ldexp(kMinStep, number);  // if it goes on and on
-    if (number < kLocalSteps) {
+    if (locally) {
       direction = CheapestDirection(rows, nodes, RowsAt(shape_, *weights_, typical_, channel));
-      more = 0.0;
     }
-    const double step = StepTo(rows, nodes, direction, albedo, bound * (1.0 - kMinStep)) + more;
+    double step = StepTo(rows, nodes, direction, albedo, bound * (1.0 - kMinStep));
+    if (!locally) step += std::ldexp(kMinStep, number);  // more and more, if it goes on
     const int last = shape_.num_layers() - 1, size = shape_.in(last) + 1;
     double* row = weights_->data() + shape_.offset(last) + channel * size;
     for (int i = 0; i < size; ++i) row[i] -= step * direction[i];
+    return true;
   }
 
   double MeanChange() const {
@@ -177,15 +219,18 @@ class Corrector {
   }
 
   const NetworkShape& shape_;
+  const std::function<bool()>& has_time_;
   std::vector<double>* weights_;
+  const AlbedoQuadrature quadrature_ = AlbedoQuadrature::OnMerlRows(2, 96);
   std::vector<DirectionPair> typical_;
   std::vector<double> before_;
 };
 
 }  // namespace
 
-Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights) {
-  return Corrector(shape, weights).Run();
+Correction LowerToConserve(const NetworkShape& shape, const std::function<bool()>& has_time,
+                           std::vector<double>* weights) {
+  return Corrector(shape, has_time, weights).Run();
 }
 
 }  // namespace pbnbrdf

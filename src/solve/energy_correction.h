@@ -1,6 +1,7 @@
 // energy_correction.h: the last step of a fit that conserves energy.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "pbnbrdf/network/network_shape.h"
@@ -21,6 +22,9 @@ struct Correction {
 // that changes log(1 + f) least, in the mean square over all angles: near that direction if the
 // network can tell it from others. If albedos keep exceeding 1, the whole channel is lowered, which always
 // ends. A reciprocal network stays so.
-Correction LowerToConserve(const NetworkShape& shape, std::vector<double>* weights);
+//
+// has_time: whether there is time for more than one of the rounds in which that is tried.
+Correction LowerToConserve(const NetworkShape& shape, const std::function<bool()>& has_time,
+                           std::vector<double>* weights);
 
 }  // namespace pbnbrdf

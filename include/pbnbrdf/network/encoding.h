@@ -59,7 +59,10 @@ constexpr Encoding PreferredEncoding(bool isotropic) {
   return kEncodings.front().second;
 }
 
+// Between the rows of a table the merl encoding may ripple: it is for materials that have such rows, and for
+// formulas, which are fitted as if they had.
 inline Encoding EncodingFor(const Brdf& material) {
+  if (material.IsIsotropic() && material.HasOwnDirections()) return Encoding::kMultiscale;
   return PreferredEncoding(material.IsIsotropic());
 }
 

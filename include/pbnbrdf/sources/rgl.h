@@ -56,6 +56,7 @@ class RglBrdf final : public Brdf {
   // As if theta_i = IncidentAngles()[index], neither the first nor the last one, had not been measured.
   RglBrdf WithoutIncidentAngle(std::size_t index) const;
 
+  bool HasOwnDirections() const override { return true; }
   bool IsIsotropic() const override;
   int NumChannels() const override { return wavelengths().size() == 1 ? 1 : 3; }
   std::string Description() const override;
