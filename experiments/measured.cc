@@ -15,7 +15,6 @@
 #include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "pbnbrdf/sources/rgl.h"
-#include "problem/fit_target.h"
 #include "problems.h"
 #include "small_scene.h"
 #include "studio.h"

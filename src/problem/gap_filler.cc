@@ -7,7 +7,9 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kOffset = 0.01;  // 1/sr, about a dark diffuse surface
+// 1/sr. Below it ratios become differences, which noise about 0 leaves unbiased.
+constexpr double kOffset = 0.03;
+constexpr double kMinRatio = -0.99;  // a value that ScatteredBrdf takes
 // Of the model's fit, which takes a tenth of a second: more of any doesn't make gaps better.
 constexpr std::size_t kMaxSamples = 400;
 const AnalyticFitOptions kOptions = {.loss_scale = 0.01,
@@ -15,8 +17,6 @@ const AnalyticFitOptions kOptions = {.loss_scale = 0.01,
                                      .starts = 4,
                                      .max_iterations = 15,
                                      .function_tolerance = 1e-4};
-
-double Raised(double f) { return std::max(f, 0.0) + kOffset; }
 
 AnalyticBrdf FitModel(std::span<const BrdfSample> measurements, bool isotropic) {
   const std::size_t step = (measurements.size() + kMaxSamples - 1) / kMaxSamples;
@@ -35,7 +35,8 @@ ScatteredData Ratios(std::span<const BrdfSample> measurements, bool isotropic, c
   data.samples.assign(measurements.begin(), measurements.end());
   for (std::size_t n = 0; n < values.size(); ++n) {
     for (int c = 0; c < 3; ++c) {
-      data.samples[n].value[c] = Raised(data.samples[n].value[c]) / Raised(values[n][c]);
+      data.samples[n].value[c] =
+          std::max((data.samples[n].value[c] + kOffset) / (values[n][c] + kOffset), kMinRatio);
     }
   }
   return data;
@@ -56,7 +57,7 @@ std::vector<BrdfSample> GapFiller::At(const std::vector<DirectionPair>& pairs) c
     BrdfSample sample = {pairs[n], {}, std::max(certainty, kMinWeight)};
     for (int c = 0; c < 3; ++c) {
       const double ratio = 1.0 + certainty * (ratios[n][c] - 1.0);
-      sample.value[c] = std::max(ratio * Raised(values[n][c]) - kOffset, 0.0);
+      sample.value[c] = ratio * (values[n][c] + kOffset) - kOffset;
     }
     samples.push_back(sample);
   }

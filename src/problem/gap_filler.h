@@ -10,7 +10,7 @@
 namespace pbnbrdf {
 
 // An analytic model fitted to the measurements (a lobe of GGX and a diffuse part), times what they
-// are beside it nearby: the ratio (f + 0.01) / (model + 0.01) is interpolated as scattered.h says, and becomes 1
+// are beside it nearby: the ratio (f + 0.03) / (model + 0.03) is interpolated as scattered.h says, and becomes 1
 // away from the measurements. What a scan in one plane says of directions beside the plane is thus what a
 // lobe that fits the scan has there.
 class GapFiller {

@@ -28,8 +28,7 @@ constexpr int kStratumSpacing = 3;       // of the grid's directions that become
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
 constexpr int kMaxRounds = 24, kRoundIterations = 40, kHastyIterations = 4;
-constexpr int kLocalRounds = 8, kHastyLocalRounds = 1;  // of the last correction
-constexpr double kSmallCorrection = 0.05;               // of the mean absolute log error
+constexpr double kSmallCorrection = 0.05;   // of the mean absolute log error
 constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
 constexpr double kMinCost = 1e-7;           // of the other terms, for the weight of this one
 constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
@@ -169,9 +168,8 @@ void ConserveEnergy(const FitProblem& problem, Training* training) {
     RunRounds(problem.terms.EnergyWeight(), &constraints, training);
   }
   if (energy.max_albedo < kClearlyConserved || !training->options().certify_energy) return;
-  const Correction correction =
-      LowerToConserve(problem.Shape(), training->MayContinue() ? kLocalRounds : kHastyLocalRounds,
-                      &training->weights());
+  const Correction correction = LowerToConserve(
+      problem.Shape(), [training] { return training->MayContinue(); }, &training->weights());
   energy.correction = correction.change;
   energy.max_albedo = correction.max_albedo;
 }

@@ -218,7 +218,7 @@ TEST(ScatteredSampling, HeldOutValuesDontLeak) {
     if (held_out.count({s.pair.wi.x, s.pair.wi.y, s.pair.wo.x, 0.0}) > 0) s.value = {1e6, 1e6, 1e6};
   }
   for (const auto& s : Draw(ScatteredBrdf(data), SampleSet::kTraining, 2)) {
-    ASSERT_NEAR(s.value[0], 0.3 / kPi, 1e-6);  // in gaps by a model that is fitted
+    ASSERT_NEAR(s.value[0], 0.3 / kPi, 1e-4);  // in gaps by a model that is fitted
   }
 }
 

@@ -183,7 +183,7 @@ TEST_F(CliSources, ScatteredMeasurementsAreAMaterial) {
       Run("fit" + material + kQuick + "--max_iterations=20 --out=" + Path("a.safetensors") +
           " --summary=" + Path("a.json"));
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(fit.out, HasSubstr("neural BRDF 6-5-1 tanh, merl encoding, 41 weights"));
+  EXPECT_THAT(fit.out, HasSubstr("neural BRDF 6-5-1 tanh, multiscale encoding, 41 weights"));
   const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
   EXPECT_EQ(summary["samples"], 864 / 8);  // all that are held out
   EXPECT_LT(summary["mean_abs_log_error"], 0.001);
