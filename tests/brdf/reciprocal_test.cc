@@ -15,7 +15,9 @@ class OneSidedBrdf final : public Brdf {
       values[n] = {z, 2.0 * z, 1.0 - z};
     }
   }
-  bool IsKnown(const DirectionPair& pair) const override { return pair.wi.z > std::cos(80 * kDegree); }
+  bool IsKnown(const DirectionPair& pair) const override {
+    return pair.wi.z > std::cos(80 * kDegree);
+  }
   double Certainty(const DirectionPair& pair) const override { return 0.1 + 0.9 * pair.wi.z; }
   std::string Description() const override { return "one-sided"; }
 
