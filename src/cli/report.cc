@@ -20,7 +20,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 // are wrong.
 constexpr double kMaxMaterialAngle = 85.0 * kDegree;
 constexpr std::size_t kTrialSamples = 500;  // to see how long one takes
-constexpr double kAlbedoValues = 1e6;  // about what the albedos of a material take
+constexpr double kAlbedoValues = 1e6;       // about what the albedos of a material take
 
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
