@@ -21,6 +21,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMaxMaterialAngle = 85.0 * kDegree;
 constexpr std::size_t kTrialSamples = 500;  // to see how long one takes
 constexpr double kAlbedoValues = 1e6;       // about what the albedos of a material take
+constexpr double kMinSamples = 5000.0;
 
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
@@ -52,7 +53,7 @@ Allowance AllowanceFor(const Brdf& material, const MeasureOptions& options) {
   const double per_sample =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
       kTrialSamples;
-  const double affordable = std::max(0.25 * options.seconds / per_sample, double(kTrialSamples));
+  const double affordable = std::max(0.05 * options.seconds / per_sample, kMinSamples);
   return {static_cast<std::size_t>(std::min(affordable, static_cast<double>(options.samples))),
           kAlbedoValues * per_sample < 0.25 * options.seconds};
 }

@@ -20,7 +20,7 @@ class GapFiller {
 
   // The values at pairs above the horizon, weighted by their certainty, at least kMinWeight.
   std::vector<BrdfSample> At(const std::vector<DirectionPair>& pairs) const;
-  static constexpr double kMinWeight = 0.1;
+  static constexpr double kMinWeight = 0.5;
 
  private:
   AnalyticBrdf model_;
