@@ -76,11 +76,7 @@ std::vector<BrdfSample> SamplesAtAngle(const Brdf& material, double theta_i, std
     const DirectionPair pair = {wi, 2.0 * Dot(wi, h) * h - wi};
     if (material.IsKnown(pair)) pairs.push_back(pair);
   }
-  std::vector<Rgb> values(pairs.size());
-  material.Evaluate(pairs, values);
-  std::vector<BrdfSample> samples;
-  for (std::size_t n = 0; n < pairs.size(); ++n) samples.push_back({pairs[n], values[n]});
-  return samples;
+  return SamplesAt(material, pairs);
 }
 
 // At all measured angles that the material is known at.

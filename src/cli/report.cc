@@ -86,7 +86,7 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
   if (allowance.material_albedo) {
     of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
   }
-  const auto at_measured = SamplesAtMeasured(material, allowance.samples, options.seed);
+  const auto at_measured = MovedToMeasured(material, heldout);
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
           {"error_at_measured", MeasureErrors(at_measured, fit).mean_abs_log_error},
           {"reciprocal_floor", ReciprocalFloor(heldout, material)},

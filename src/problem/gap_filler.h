@@ -9,10 +9,10 @@
 
 namespace pbnbrdf {
 
-// An analytic model fitted to the measurements (a lobe of GGX and a diffuse part), times what they
-// are beside it nearby: the ratio (f + 0.03) / (model + 0.03) is interpolated as scattered.h says, and becomes 1
-// away from the measurements. What a scan in one plane says of directions beside the plane is thus what a
-// lobe that fits the scan has there.
+// An analytic model, a lobe of GGX and a diffuse part, is fitted to the measurements and corrected by them:
+// the ratio (f + 0.03) / (model + 0.03) is interpolated between them as scattered.h says, and becomes 1 far
+// from them. What a scan in one plane says of directions beside the plane is thus what a lobe that fits the
+// scan has there.
 class GapFiller {
  public:
   // measurements: at least one.

@@ -83,14 +83,6 @@ std::vector<BrdfSample> PartOf(const std::vector<BrdfSample>& all, SampleSet set
   return part;
 }
 
-std::vector<BrdfSample> SamplesAt(const Brdf& material, const std::vector<DirectionPair>& pairs) {
-  std::vector<Rgb> values(pairs.size());
-  material.Evaluate(pairs, values);
-  std::vector<BrdfSample> samples;
-  for (std::size_t n = 0; n < pairs.size(); ++n) samples.push_back({pairs[n], values[n]});
-  return samples;
-}
-
 // Fisher and Yates; std::shuffle differs between libraries.
 void Shuffle(std::vector<BrdfSample>* samples, std::mt19937_64* random) {
   for (std::size_t n = samples->size(); n > 1; --n)
@@ -204,12 +196,22 @@ std::vector<BrdfSample> HeldOutSamples(const Brdf& material, std::size_t count,
   return DrawSamples(material, SampleSet::kHeldOut, Sampling::kUniform, count, seed);
 }
 
-std::vector<BrdfSample> SamplesAtMeasured(const Brdf& material, std::size_t count,
-                                          std::uint64_t seed) {
+std::vector<BrdfSample> SamplesAt(const Brdf& material, const std::vector<DirectionPair>& pairs) {
+  std::vector<Rgb> values(pairs.size());
+  material.Evaluate(pairs, values);
+  std::vector<BrdfSample> samples;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (material.IsKnown(pairs[n])) samples.push_back({pairs[n], values[n]});
+  }
+  return samples;
+}
+
+std::vector<BrdfSample> MovedToMeasured(const Brdf& material, std::span<const BrdfSample> samples) {
   std::vector<DirectionPair> pairs;
-  for (const BrdfSample& sample : HeldOutSamples(material, count, seed)) {
-    const DirectionPair pair = material.NearestMeasured(sample.pair).value_or(sample.pair);
-    if (material.IsKnown(pair)) pairs.push_back(pair);
+  for (const BrdfSample& sample : samples) {
+    const auto measured = material.NearestMeasured(sample.pair);
+    if (!measured) return {samples.begin(), samples.end()};
+    pairs.push_back(*measured);
   }
   return SamplesAt(material, pairs);
 }

@@ -75,7 +75,7 @@ std::vector<float> ReadNodes(const TensorFile& file, const std::string& name, fl
 }
 
 // The slope at a node between intervals of these widths and secants, by which a cubic between nodes stays
-// monotone: the weighted harmonic mean of Fritsch and Butland (1984).
+// monotone: a weighted harmonic mean (rgl.h, [2]).
 double MonotoneSlope(double width0, double secant0, double width1, double secant1) {
   if (secant0 * secant1 <= 0.0) return 0.0;
   const double w0 = 2.0 * width1 + width0, w1 = width1 + 2.0 * width0;

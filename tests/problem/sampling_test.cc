@@ -71,7 +71,7 @@ TEST(Sampling, TrainingHasAPartAtMeasuredDirectionsAndWeights) {
   }
   // More than 0.4, as some of the other pairs are below the horizon.
   EXPECT_NEAR(measured / 4000.0, 0.46, 0.06);
-  for (const BrdfSample& sample : SamplesAtMeasured(brdf, 100, 1)) {
+  for (const BrdfSample& sample : MovedToMeasured(brdf, HeldOutSamples(brdf, 100, 1))) {
     EXPECT_EQ(brdf.Certainty(sample.pair), 1.0);
   }
 }

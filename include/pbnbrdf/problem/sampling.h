@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "pbnbrdf/base/names.h"
@@ -43,10 +44,10 @@ enum class SampleSet { kTraining, kHeldOut };
 // Of a Brdf that is a list of measurements these are the samples, in a random order. One in 8 is held
 // out, whatever the seed, together with those at the same place (scattered.h): repeated, reciprocal
 // and, if isotropic, mirrored ones. To three training samples comes a fourth at angles drawn as those
-// of any other Brdf, with the value that a model fitted to the training samples
-// and they themselves suggest there (gap_filler.h): what is measured along a few lines only leaves wide gaps, in which networks that nothing holds grow by orders of
-// magnitude. Where there are fewer than 3000, all are repeated until they aren't, so that gaps are
-// filled, too, without counting more than measurements.
+// of any other Brdf, with the value that they and a model fitted to them suggest there (gap_filler.h):
+// what is measured along a few lines only leaves wide gaps, in which networks that nothing holds grow by
+// orders of magnitude. Where there are fewer than 3000, all are repeated until they aren't, so that gaps
+// are filled, too, without counting more than measurements.
 class SampleStream {
  public:
   // brdf must outlive this.
@@ -85,9 +86,11 @@ std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const Sampl
 // What a fit to the material is measured on: DrawSamples of SampleSet::kHeldOut at uniform angles.
 std::vector<BrdfSample> HeldOutSamples(const Brdf& material, std::size_t count, std::uint64_t seed);
 
-// The same, each moved to the nearest directions at which the material was measured; as they are where
+// The values at the pairs at which the material is known.
+std::vector<BrdfSample> SamplesAt(const Brdf& material, const std::vector<DirectionPair>& pairs);
+
+// The samples, each moved to the nearest directions at which the material was measured; as they are where
 // it is known equally well everywhere.
-std::vector<BrdfSample> SamplesAtMeasured(const Brdf& material, std::size_t count,
-                                          std::uint64_t seed);
+std::vector<BrdfSample> MovedToMeasured(const Brdf& material, std::span<const BrdfSample> samples);
 
 }  // namespace pbnbrdf

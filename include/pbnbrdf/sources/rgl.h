@@ -13,7 +13,8 @@
 //
 // [1] J. Dupuy, W. Jakob. An Adaptive Parameterization for Efficient Material Acquisition and
 //     Rendering. ACM TOG 37(6), 2018.
-// [2] F. Fritsch, R. Carlson. Monotone Piecewise Cubic Interpolation. SIAM J. Numer. Anal. 17(2), 1980.
+// [2] F. Fritsch, J. Butland. A Method for Constructing Local Monotone Piecewise Cubic Interpolants. SIAM
+//     Journal on Scientific and Statistical Computing 5(2), 1984.
 #pragma once
 
 #include <memory>
