@@ -13,20 +13,14 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kSmallestCosine = 1e-4;
-constexpr double kLeastWeighted = -0.999;  // f cos_i: log1p is defined beyond -1
 constexpr std::size_t kNeighbors = 8;
 // Squared distance of measurements at one place: rounding of their angles.
 constexpr double kSamePlace = 1e-20;
 
-bool IsUsable(const BrdfSample& sample) {
-  const double cos_i = sample.pair.wi.z;
-  return std::min(cos_i, sample.pair.wo.z) > kSmallestCosine &&
-         std::all_of(sample.value.begin(), sample.value.end(),
-                     [&](double v) { return v * cos_i > kLeastWeighted && std::isfinite(v); });
-}
-
 ScatteredData Usable(ScatteredData data) {
-  data.left_out += std::erase_if(data.samples, [](const auto& s) { return !IsUsable(s); });
+  data.left_out += std::erase_if(data.samples, [](const BrdfSample& s) {
+    return !(std::min(s.pair.wi.z, s.pair.wo.z) > kSmallestCosine && IsUsable(s));
+  });
   if (data.samples.empty()) {
     Fail("no data: of ", data.left_out,
          " measurements none has both directions above the horizon and a usable value");

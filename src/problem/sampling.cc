@@ -20,7 +20,6 @@ constexpr std::size_t kDrawsPerKnown = 10000;
 constexpr std::size_t kHeldOutOneIn = 8;
 constexpr std::size_t kFewMeasurements = 3000, kMeasuredToInterpolated = 3;
 constexpr double kPlacesPerUnit = 1e6;
-constexpr double kMinProduct = -0.999;  // of f cos: log1p ends at -1
 // Of the training samples: the part at measured directions, where f isn't measured everywhere alike
 // (experiments/measured.cc).
 constexpr double kMeasuredPart = 0.4;
@@ -40,14 +39,6 @@ double DrawThetaH(Sampling sampling, std::mt19937_64& random) {
   const double u = Uniform(random);
   if (sampling == Sampling::kUniform) return 0.5 * kPi * u;
   return 0.5 * kPi * (u < 0.5 ? 2.0 * u : std::pow(2.0 * u - 1.0, 4));
-}
-
-// Whether the log term exists there. Noise makes measurements negative; to leave them out would make
-// dark materials brighter.
-bool IsUsable(const BrdfSample& sample) {
-  const double cos_i = CosI(sample.pair);
-  return std::all_of(sample.value.begin(), sample.value.end(),
-                     [&](double v) { return v * cos_i > kMinProduct && std::isfinite(v); });
 }
 
 // The finalizer of splitmix64 (Steele, Lea, Flood 2014).

@@ -100,19 +100,40 @@ double StepTo(const Rows& rows, const std::vector<AlbedoNode>& nodes, const Vect
   return step;
 }
 
-// The change of log(1 + f) per unit step, whose mean square is least for what it takes off the albedo.
-VectorXd CheapestDirection(const Rows& rows, const std::vector<AlbedoNode>& nodes,
-                           const Rows& typical) {
+// What a channel's albedo gains as its last weights grow.
+VectorXd AlbedoGradient(const Rows& rows, const std::vector<AlbedoNode>& nodes) {
   VectorXd gradient = VectorXd::Zero(rows.features.cols());
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);
     if (!(rows.z[row] > 0.0)) continue;
     gradient += nodes[n].weight * std::exp(rows.z[row]) * rows.features.row(row).transpose();
   }
-  MatrixXd squares = typical.features.transpose() * typical.features;
-  squares.diagonal().array() += kRidge * squares.trace() / static_cast<double>(squares.rows());
-  return squares.ldlt().solve(gradient / gradient.norm());
+  return gradient;
 }
+
+// What a change of a channel's last weights does to log(1 + f) at typical pairs. The features there are
+// those of the layers before, which stay.
+class TypicalChange {
+ public:
+  TypicalChange(const NetworkShape& shape, const std::vector<double>& weights)
+      : features_(
+            RowsAt(shape, weights, TypicalPairs(IsIsotropic(shape.encoding())), 0).features) {
+    MatrixXd squares = features_.transpose() * features_;
+    squares.diagonal().array() += kRidge * squares.trace() / static_cast<double>(squares.rows());
+    squares_.compute(squares);
+  }
+
+  // The direction that changes log(1 + f) least, in the mean square, for what it gains along the gradient.
+  VectorXd Cheapest(const VectorXd& gradient) const {
+    return squares_.solve(gradient / gradient.norm());
+  }
+
+  double MeanAbs(const VectorXd& change) const { return (features_ * change).cwiseAbs().mean(); }
+
+ private:
+  MatrixXd features_;
+  Eigen::LDLT<MatrixXd> squares_;
+};
 
 class Corrector {
  public:
@@ -121,7 +142,7 @@ class Corrector {
       : shape_(shape),
         has_time_(has_time),
         weights_(weights),
-        typical_(TypicalPairs(IsIsotropic(shape.encoding()))),
+        typical_(shape, *weights),
         before_(*weights) {}
 
   Correction Run() {
@@ -197,23 +218,23 @@ class Corrector {
     for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
     const Rows rows = RowsAt(shape_, *weights_, pairs, channel);
     VectorXd direction = VectorXd::Unit(rows.features.cols(), rows.features.cols() - 1);
-    if (locally) {
-      direction = CheapestDirection(rows, nodes, RowsAt(shape_, *weights_, typical_, channel));
-    }
+    if (locally) direction = typical_.Cheapest(AlbedoGradient(rows, nodes));
     double step = StepTo(rows, nodes, direction, albedo, bound * (1.0 - kMinStep));
     if (!locally) step += std::ldexp(kMinStep, number);  // more and more, if it goes on
-    const int last = shape_.num_layers() - 1, size = shape_.in(last) + 1;
-    double* row = weights_->data() + shape_.offset(last) + channel * size;
-    for (int i = 0; i < size; ++i) row[i] -= step * direction[i];
+    LastWeights(weights_, channel) -= step * direction;
     return true;
   }
 
-  double MeanChange() const {
+  Eigen::Map<VectorXd> LastWeights(std::vector<double>* weights, int channel) const {
+    const int last = shape_.num_layers() - 1, size = shape_.in(last) + 1;
+    return {weights->data() + shape_.offset(last) + channel * size, size};
+  }
+
+  double MeanChange() {
     double largest = 0.0;
     for (int c = 0; c < shape_.num_outputs(); ++c) {
-      const VectorXd change =
-          RowsAt(shape_, *weights_, typical_, c).z - RowsAt(shape_, before_, typical_, c).z;
-      largest = std::max(largest, change.cwiseAbs().mean());
+      largest = std::max(
+          largest, typical_.MeanAbs(LastWeights(weights_, c) - LastWeights(&before_, c)));
     }
     return largest;
   }
@@ -222,7 +243,7 @@ class Corrector {
   const std::function<bool()>& has_time_;
   std::vector<double>* weights_;
   const AlbedoQuadrature quadrature_ = AlbedoQuadrature::OnMerlRows(2, 96);
-  std::vector<DirectionPair> typical_;
+  const TypicalChange typical_;
   std::vector<double> before_;
 };
 

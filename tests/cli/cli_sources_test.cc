@@ -183,7 +183,7 @@ TEST_F(CliSources, ScatteredMeasurementsAreAMaterial) {
       Run("fit" + material + kQuick + "--max_iterations=20 --out=" + Path("a.safetensors") +
           " --summary=" + Path("a.json"));
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(fit.out, HasSubstr("neural BRDF 6-5-1 tanh, multiscale encoding, 41 weights"));
+  EXPECT_THAT(fit.out, HasSubstr("neural BRDF 6-5-1 tanh, elevations encoding, 41 weights"));
   const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
   EXPECT_EQ(summary["samples"], 864 / 8);  // all that are held out
   EXPECT_LT(summary["mean_abs_log_error"], 0.001);
@@ -202,7 +202,7 @@ TEST_F(CliSources, ScatteredMeasurementsAreAMaterial) {
   ExpectError("fit" + material + " --terms=log,chromaticity --out=" + Path("out"), 1,
               "a.csv: terms: chromaticity is of no use to a single channel");
   ExpectError("fit" + material + " --init=" + Path("a.safetensors") + " --out=" + Path("out"), 1,
-              "a network 6-5-1 tanh, multiscale encoding; --init needs 6-21-21-1 tanh");
+              "a network 6-5-1 tanh, elevations encoding; --init needs 6-21-21-1 tanh");
   WriteBytes(Path("bad.csv"), csv + "5,0,5");
   ExpectError("info " + Path("bad.csv"), 1, "bad.csv: line 866: 3 columns, expected 5");
   WriteBytes(Path("bad.alta"), "#DIM 1 1\n");

@@ -57,6 +57,9 @@ TEST(Encoding, IsWhatTheFormulasSay) {
                                             sd * sd * std::cos(2 * pd),
                                             sd * sd * std::sin(2 * pd),
                                             std::cos(td)};
+  std::array<double, 6> elevations = multiscale;
+  elevations[0] = pair.wi.z * pair.wo.z;
+  elevations[4] = 0.5 * (pair.wi.z + pair.wo.z);
   const double row = 90 * root;  // 50.78: between rows 50 and 51 of a table
   std::array<double, 6> merl = multiscale;
   merl[0] = 4 * (row - 50) * (51 - row);
@@ -71,6 +74,7 @@ TEST(Encoding, IsWhatTheFormulasSay) {
     EXPECT_NEAR(Encode(Encoding::kCartesian, pair)[i], cartesian[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kReciprocal, pair)[i], reciprocal[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kMultiscale, pair)[i], multiscale[i], 1e-14);
+    EXPECT_NEAR(Encode(Encoding::kElevations, pair)[i], elevations[i], 1e-14);
     EXPECT_NEAR(Encode(Encoding::kMerl, pair)[i], merl[i], 1e-12);
     EXPECT_NEAR(Encode(Encoding::kAnisotropic, pair)[i], anisotropic[i], 1e-14);
   }

@@ -17,6 +17,11 @@ struct BrdfSample {
   double weight = 1.0;  // of its residuals in a fit, in (0, 1]; 1: as well known as any
 };
 
+// Whether the terms of a fit exist there: its values are finite, and log(1 + f cos theta_i) is defined
+// (f cos theta_i > -0.999). Noise makes measurements negative; to leave those out would make dark
+// materials brighter.
+bool IsUsable(const BrdfSample& sample);
+
 // A bidirectional reflectance distribution function f(wi, wo): linear RGB in 1/sr, finite, not
 // multiplied by a cosine. Batches are the unit of work. All members may be called from several
 // threads at once.

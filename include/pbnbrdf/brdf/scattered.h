@@ -40,9 +40,8 @@ class ScatteredBrdf final : public Brdf {
  public:
   static constexpr double kMirrorGap = 0.05;
 
-  // Leaves out samples with a direction that isn't above the horizon (a cosine of at most 1e-4), a value
-  // that isn't finite, or one so negative that log1p(f cos_i) is undefined (f cos_i <= -0.999); values are
-  // cut to kLargestValue. Throws Error if none is left.
+  // Leaves out samples with a direction that isn't above the horizon (a cosine of at most 1e-4), and those
+  // that aren't usable (IsUsable); values are cut to kLargestValue. Throws Error if none is left.
   explicit ScatteredBrdf(ScatteredData data);
 
   // At a measurement it is that, or the mean of those at the same place.

@@ -62,7 +62,7 @@ constexpr Encoding PreferredEncoding(bool isotropic) {
 // Between the rows of a table the merl encoding may ripple: it is for materials that have such rows, and for
 // formulas, which are fitted as if they had.
 inline Encoding EncodingFor(const Brdf& material) {
-  if (material.IsIsotropic() && material.HasOwnDirections()) return Encoding::kMultiscale;
+  if (material.IsIsotropic() && material.HasOwnDirections()) return Encoding::kElevations;
   return PreferredEncoding(material.IsIsotropic());
 }
 

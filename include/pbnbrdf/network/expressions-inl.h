@@ -46,6 +46,17 @@ Inputs<V> MultiscaleInputs(const HalfDiffOf<V>& v) {
   return {v.sin_theta, root, log_theta, x, y, v.dz};
 }
 
+// (cos theta_i cos theta_o, sqrt(2 th / pi), log(th + 0.001) / 3, dx^2 - dy^2,
+// (cos theta_i + cos theta_o) / 2, dz). Both elevations are known, in no order: what depends on them, such
+// as the shadows at grazing angles, need not be put together from the others. phi_d and -phi_d are one.
+template <class V>
+Inputs<V> ElevationsInputs(const HalfDiffOf<V>& v) {
+  const V x = v.dx * v.dx - v.dy * v.dy;
+  const auto [root, log_theta] = ScaleTheta(v);
+  const V mean = v.cos_theta * v.dz, half_difference = v.sin_theta * v.dx;
+  return {mean * mean - half_difference * half_difference, root, log_theta, x, mean, v.dz};
+}
+
 // As multiscale, with 4 u (1 - u) for sin th. u in [0, 1) is where th lies between two of the 90 rows
 // of a MERL table, whose theta_h grows as the square of the row's number: 0 at a row, 1 midway. A table
 // that is interpolated linearly has a kink at each row, and across a sharp highlight f changes tenfold
@@ -89,6 +100,7 @@ V ClampedReflectance(const V& z) {
   ENCODING(kCartesian, "cartesian", CartesianInputs, .isotropic = true)                             \
   ENCODING(kReciprocal, "reciprocal", ReciprocalInputs, .isotropic = true, .reciprocal = true)      \
   ENCODING(kMultiscale, "multiscale", MultiscaleInputs, .isotropic = true, .reciprocal = true)      \
+  ENCODING(kElevations, "elevations", ElevationsInputs, .isotropic = true, .reciprocal = true)      \
   ENCODING(kMerl, "merl", MerlInputs, .isotropic = true, .reciprocal = true, .preferred = true)     \
   ENCODING(kAnisotropic, "anisotropic", AnisotropicInputs, .reciprocal = true, .preferred = true)
 // clang-format on
