@@ -5,6 +5,14 @@
 
 namespace pbnbrdf {
 
+WeightsAlong::WeightsAlong(const double* weights, const double* direction, int size)
+    : behind(weights, weights + size), here(behind), ahead(behind) {
+  for (int i = 0; i < size; ++i) {
+    behind[i] -= kStep * direction[i];
+    ahead[i] += kStep * direction[i];
+  }
+}
+
 int SampleTerms::rows() const {
   int rows = 0;
   for (const WeightedSampleTerm& term : terms) rows += term.term->rows();
@@ -114,16 +122,62 @@ void BatchPass<T>::AddGradient(const T* weights, const T* input, std::size_t b, 
     if (terms_.loss.is_absolute()) {
       AddAbsolutes(t, b, size, cost);
     } else {
-      AddSquares(t, b, size, cost);
+      AddSquares(t, b, size, batches_[t].residuals.data(), cost);
     }
   }
+  BackwardSum(weights, gradient);
+}
+
+template <typename T>
+void BatchPass<T>::AddCurve(const WeightsAlong& weights, const T* input, std::size_t b, int size,
+                            T* gradient)
+  requires std::same_as<T, double>
+{
+  constexpr double kPerStep = 1.0 / (WeightsAlong::kStep * WeightsAlong::kStep);
+  second_.resize(batches_.size());
+  for (std::size_t t = 0; t < batches_.size(); ++t) {
+    second_[t].assign(batches_[t].residuals.size(), 0.0);
+  }
+  AddResiduals(weights.behind.data(), input, b, size, kPerStep);
+  AddResiduals(weights.ahead.data(), input, b, size, kPerStep);
+  AddResiduals(weights.here.data(), input, b, size, -2.0 * kPerStep);
+  std::fill(sum_.begin(), sum_.end(), 0.0);
+  double cost = 0.0;  // not asked for
+  for (std::size_t t = 0; t < batches_.size(); ++t) {
+    terms_.terms[t].term->Evaluate(b, size, z_.data(), &batches_[t]);
+    AddSquares(t, b, size, second_[t].data(), &cost);
+  }
+  BackwardSum(weights.here.data(), gradient);
+}
+
+// Adds `scale` times the residuals to second_.
+template <typename T>
+void BatchPass<T>::AddResiduals(const T* weights, const T* input, std::size_t b, int size,
+                                double scale) {
+  Forward(weights, input);
+  for (std::size_t t = 0; t < batches_.size(); ++t) {
+    const SampleTerm& term = *terms_.terms[t].term;
+    term.EvaluateResiduals(b, size, z_.data(), &batches_[t]);
+    for (int row = 0; row < term.rows(); ++row) {
+      for (int n = row * kBatch; n < row * kBatch + size; ++n) {
+        second_[t][n] += scale * batches_[t].residuals[n];
+      }
+    }
+  }
+}
+
+// From sum_, the gradient with respect to the outputs.
+template <typename T>
+void BatchPass<T>::BackwardSum(const T* weights, T* gradient) {
   std::copy(sum_.begin(), sum_.end(), mlp_.output_gradient(0));
   mlp_.Backward(weights);
   mlp_.AddWeightGradient(0, gradient);
 }
 
+// factors: by row and sample, what each row is multiplied by; the residuals for J'r.
 template <typename T>
-void BatchPass<T>::AddSquares(std::size_t t, std::size_t b, int size, double* cost) {
+void BatchPass<T>::AddSquares(std::size_t t, std::size_t b, int size, const double* factors,
+                              double* cost) {
   const TermBatch& batch = batches_[t];
   const int rows = terms_.terms[t].term->rows();
   for (int n = 0; n < size; ++n) {
@@ -131,10 +185,10 @@ void BatchPass<T>::AddSquares(std::size_t t, std::size_t b, int size, double* co
     const RobustWeight robust = terms_.loss.At(weight, SquaredNorm(batch, rows, n));
     *cost += robust.cost;
     for (int row = 0; row < rows; ++row) {
-      const double residual = robust.row_scale * batch.residuals[row * kBatch + n];
+      const double factor = robust.row_scale * factors[row * kBatch + n];
       for (int c = 0; c < kChannels; ++c) {
         const double slope = robust.row_scale * batch.slopes[(row * kChannels + c) * kBatch + n];
-        sum_[c * kBatch + n] += residual * slope;
+        sum_[c * kBatch + n] += factor * slope;
       }
     }
   }

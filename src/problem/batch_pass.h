@@ -2,6 +2,7 @@
 // the outputs of the network.
 #pragma once
 
+#include <concepts>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,15 @@ struct SampleTerms {
   double WeightOf(const WeightedSampleTerm& term, std::size_t n) const {
     return term.weight * samples->weight(n) / total_weight;
   }
+};
+
+// Weights at three points of a line: -kStep, 0 and kStep times a direction away. Second differences over
+// them are second derivatives to 1e-6 or so of their size: the passes must be in double precision.
+struct WeightsAlong {
+  static constexpr double kStep = 1e-3;
+  WeightsAlong(const double* weights, const double* direction, int size);
+
+  AlignedVector<double> behind, here, ahead;
 };
 
 // Holds the intermediate values of one batch, so each thread needs its own. T is float or double.
@@ -46,12 +56,18 @@ class BatchPass {
   void AddGradient(const T* weights, const T* input, std::size_t b, int size, T* gradient,
                    double* cost);
 
+  // Adds J'r'' to gradient (P): r'', the second derivative along the line, in the place of r.
+  void AddCurve(const WeightsAlong& weights, const T* input, std::size_t b, int size, T* gradient)
+    requires std::same_as<T, double>;
+
  private:
   static constexpr int kChannels = NetworkShape::kChannels;
   static constexpr int kBatch = kernels::kBatch;
 
   void Forward(const T* weights, const T* input);
-  void AddSquares(std::size_t t, std::size_t b, int size, double* cost);
+  void AddSquares(std::size_t t, std::size_t b, int size, const double* factors, double* cost);
+  void AddResiduals(const T* weights, const T* input, std::size_t b, int size, double scale);
+  void BackwardSum(const T* weights, T* gradient);
   void AddAbsolutes(std::size_t t, std::size_t b, int size, double* cost);
   double SquaredNorm(const TermBatch& batch, int rows, int n) const;
   void ClearRows();
@@ -62,6 +78,7 @@ class BatchPass {
   AlignedVector<double> z_;         // the outputs, kChannels x kBatch
   AlignedVector<double> sum_;       // of rows times residuals, kChannels x kBatch
   AlignedVector<T> residuals_;      // row after row
+  std::vector<AlignedVector<double>> second_;  // of AddCurve: r'', a term after the other
 };
 
 extern template class BatchPass<float>;

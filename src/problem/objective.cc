@@ -42,7 +42,11 @@ class SumObjective final : public Objective {
   void SetEnergy(double weight, std::span<const EnergyStratum> strata) override {
     energy_.Set(weight, strata);
   }
-  double HessianRounding() const override { return 10.0 * std::numeric_limits<T>::epsilon(); }
+  void SumCurvatureInDouble() override {
+    sums_.SumCurvatureInDouble();
+    rounding_ = std::numeric_limits<double>::epsilon();
+  }
+  double HessianRounding() const override { return 10.0 * rounding_; }
   const EnergyWork& energy_work() const override { return energy_.work(); }
 
   double Cost(const double* weights) override {
@@ -56,9 +60,14 @@ class SumObjective final : public Objective {
     at->cost = 0.0;
     at->gradient.assign(w.size(), 0.0);
     at->hessian.assign(w.size() * w.size(), 0.0);
-    sums_.AddCurvature(w.data(), part, at);
+    sums_.AddCurvature(w.data(), weights, part, at);
     energy_.Linearize(w.data(), at);
     return IsFinite(*at);
+  }
+
+  std::vector<double> Curve(const double* weights, const double* direction,
+                            CurvaturePart part) override {
+    return sums_.Curve(weights, direction, part);
   }
 
   bool Gradient(const double* weights, double* cost, double* gradient) override {
@@ -84,6 +93,7 @@ class SumObjective final : public Objective {
   std::unique_ptr<EncodedSamples> owned_;
   NetworkShape shape_;
   SampleSums<T> sums_;
+  double rounding_ = std::numeric_limits<T>::epsilon();  // of the sums of J'J
   EnergyTerm<T> energy_;
 };
 

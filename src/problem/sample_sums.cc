@@ -103,44 +103,85 @@ void SampleSums<T>::AddGradient(const T* weights, Linearization* at) {
 }
 
 template <typename T>
-void SampleSums<T>::AddCurvature(const T* weights, CurvaturePart part, Linearization* at) {
+typename SampleSums<T>::Division SampleSums<T>::Divide(CurvaturePart part) const {
   part.count = std::clamp<std::size_t>(part.count, 1, all_batches_.size());
-  Batches curved, rest;
-  double curved_samples = 0.0;
+  Division division;
+  double samples = 0.0;
   for (std::size_t b : all_batches_) {
-    const bool is_curved = b % part.count == part.index % part.count;
-    (is_curved ? curved : rest).push_back(b);
-    if (is_curved) curved_samples += inputs_.batch_size(b);
+    const bool is_part = b % part.count == part.index % part.count;
+    (is_part ? division.part : division.rest).push_back(b);
+    if (is_part) samples += inputs_.batch_size(b);
   }
-  AddCurvatureOf(weights, curved, at);
-  const double scale = static_cast<double>(inputs_.size()) / curved_samples;
-  if (scale != 1.0) {
-    for (double& entry : at->hessian) entry *= scale;
+  division.scale = static_cast<double>(inputs_.size()) / samples;
+  return division;
+}
+
+template <typename T>
+void SampleSums<T>::AddCurvature(const T* weights, const double* exact_weights, CurvaturePart part,
+                                 Linearization* at) {
+  const Division division = Divide(part);
+  if (curvature_in_double_) {
+    AddCurvatureOf(exact_weights, samples_.inputs(), division.part, &exact_curvature_sums_, at);
+  } else {
+    AddCurvatureOf(weights, inputs_, division.part, &curvature_sums_, at);
   }
-  AddGradientOf(weights, rest, at);
+  if (division.scale != 1.0) {
+    for (double& entry : at->hessian) entry *= division.scale;
+  }
+  AddGradientOf(weights, division.rest, at);
+}
+
+template <typename T>
+std::vector<double> SampleSums<T>::Curve(const double* weights, const double* direction,
+                                         CurvaturePart part) {
+  const Division division = Divide(part);
+  const WeightsAlong along(weights, direction, shape_.num_weights());
+  const Batches& batches = division.part;
+  MakeSums(shape_, terms_, batches.size(), &curve_sums_);
+  const std::size_t used = ForEachPartition(batches.size(), [&](std::size_t p, std::size_t step) {
+    GradientSum<double>& sum = *curve_sums_[p];
+    sum.Clear();
+    for (std::size_t i = p; i < batches.size(); i += step) {
+      const std::size_t b = batches[i];
+      sum.AddBatch([&](double* gradient) {
+        sum.pass.AddCurve(along, samples_.inputs().batch(b), b, inputs_.batch_size(b), gradient);
+      });
+    }
+  });
+  std::vector<double> total(shape_.num_weights(), 0.0);
+  for (std::size_t p = 0; p < used; ++p) {
+    for (std::size_t k = 0; k < total.size(); ++k) {
+      total[k] += division.scale * curve_sums_[p]->sum[k];
+    }
+  }
+  return total;
 }
 
 // Adds cost, J'r and J'J of some batches, at least one.
 template <typename T>
-void SampleSums<T>::AddCurvatureOf(const T* weights, const Batches& batches, Linearization* at) {
-  MakeSums(shape_, terms_, batches.size(), &curvature_sums_);
+template <typename U>
+void SampleSums<T>::AddCurvatureOf(const U* weights, const EncodedBatches<U>& inputs,
+                                   const Batches& batches,
+                                   std::vector<std::unique_ptr<CurvatureSum<U>>>* sums,
+                                   Linearization* at) {
+  MakeSums(shape_, terms_, batches.size(), sums);
   const std::size_t used = ForEachPartition(batches.size(), [&](std::size_t p, std::size_t step) {
-    CurvatureSum& sum = *curvature_sums_[p];
+    CurvatureSum<U>& sum = *(*sums)[p];
     sum.cost = 0.0;
     sum.sums.Clear();
     for (std::size_t i = p; i < batches.size(); i += step) {
       const std::size_t b = batches[i];
-      sum.pass.Linearize(weights, inputs_.batch(b), b, inputs_.batch_size(b), &sum.cost);
+      sum.pass.Linearize(weights, inputs.batch(b), b, inputs_.batch_size(b), &sum.cost);
       sum.sums.AddBatch(sum.pass.mlp(), sum.pass.residuals());
     }
   });
-  std::vector<const NormalEquations<T>*> others;
+  std::vector<const NormalEquations<U>*> others;
   for (std::size_t p = 0; p < used; ++p) {
-    at->cost += curvature_sums_[p]->cost;
-    if (p > 0) others.push_back(&curvature_sums_[p]->sums);
+    at->cost += (*sums)[p]->cost;
+    if (p > 0) others.push_back(&(*sums)[p]->sums);
   }
-  curvature_sums_[0]->sums.Add(others);
-  curvature_sums_[0]->sums.AddTo(at->gradient.data(), at->hessian.data());
+  sums->front()->sums.Add(others);
+  sums->front()->sums.AddTo(at->gradient.data(), at->hessian.data());
 }
 
 // Adds cost and J'r of some batches.
@@ -148,19 +189,18 @@ template <typename T>
 void SampleSums<T>::AddGradientOf(const T* weights, const Batches& batches, Linearization* at) {
   MakeSums(shape_, terms_, batches.size(), &gradient_sums_);
   const std::size_t used = ForEachPartition(batches.size(), [&](std::size_t p, std::size_t step) {
-    GradientSum& sum = *gradient_sums_[p];
-    sum.cost = 0.0;
-    std::fill(sum.sum.begin(), sum.sum.end(), 0.0);
+    GradientSum<T>& sum = *gradient_sums_[p];
+    sum.Clear();
     for (std::size_t i = p; i < batches.size(); i += step) {
       const std::size_t b = batches[i];
-      std::fill(sum.of_batch.begin(), sum.of_batch.end(), T(0));
-      sum.pass.AddGradient(weights, inputs_.batch(b), b, inputs_.batch_size(b), sum.of_batch.data(),
-                           &sum.cost);
-      for (std::size_t k = 0; k < sum.sum.size(); ++k) sum.sum[k] += sum.of_batch[k];
+      sum.AddBatch([&](T* gradient) {
+        sum.pass.AddGradient(weights, inputs_.batch(b), b, inputs_.batch_size(b), gradient,
+                             &sum.cost);
+      });
     }
   });
   for (std::size_t p = 0; p < used; ++p) {
-    const GradientSum& sum = *gradient_sums_[p];
+    const GradientSum<T>& sum = *gradient_sums_[p];
     at->cost += sum.cost;
     for (std::size_t k = 0; k < sum.sum.size(); ++k) at->gradient[k] += sum.sum[k];
   }

@@ -1,6 +1,7 @@
 // sample_sums.h: sums over samples, shared among threads: the cost of the terms over samples, J'r and J'J.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -29,40 +30,74 @@ class SampleSums {
   // Adds cost and J'r of all samples.
   void AddGradient(const T* weights, Linearization* at);
 
-  // The same, and J'J of a part of them, scaled up to stand for all.
-  void AddCurvature(const T* weights, CurvaturePart part, Linearization* at);
+  // The same, and J'J of a part of them, scaled up to stand for all. weights: in both precisions.
+  void AddCurvature(const T* weights, const double* exact_weights, CurvaturePart part,
+                    Linearization* at);
+
+  // The samples of the part go through passes in double precision from now on.
+  void SumCurvatureInDouble() { curvature_in_double_ = true; }
+
+  // Objective::Curve; always in double precision.
+  std::vector<double> Curve(const double* weights, const double* direction, CurvaturePart part);
 
  private:
   using Batches = std::vector<std::size_t>;
 
+  // The batches of a part, those that aren't, and how many times the samples of the part make all.
+  struct Division {
+    Batches part, rest;
+    double scale;
+  };
+
   // Partial sums.
+  template <typename U>
   struct CurvatureSum {
     CurvatureSum(const NetworkShape& shape, const SampleTerms& terms)
         : pass(shape, terms, terms.rows()), sums(shape) {}
-    BatchPass<T> pass;
-    NormalEquations<T> sums;
+    BatchPass<U> pass;
+    NormalEquations<U> sums;
     double cost = 0.0;
   };
+  template <typename U>
   struct GradientSum {
     GradientSum(const NetworkShape& shape, const SampleTerms& terms)
         : pass(shape, terms, 1), of_batch(shape.num_weights()), sum(shape.num_weights()) {}
-    BatchPass<T> pass;
-    AlignedVector<T> of_batch;
+    BatchPass<U> pass;
+    AlignedVector<U> of_batch;
     std::vector<double> sum;
     double cost = 0.0;
+
+    void Clear() {
+      cost = 0.0;
+      std::fill(sum.begin(), sum.end(), 0.0);
+    }
+    // Calls add(U* gradient) for one batch.
+    template <typename Add>
+    void AddBatch(Add add) {
+      std::fill(of_batch.begin(), of_batch.end(), U(0));
+      add(of_batch.data());
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += of_batch[k];
+    }
   };
 
+  Division Divide(CurvaturePart part) const;
   void AddGradientOf(const T* weights, const Batches& batches, Linearization* at);
-  void AddCurvatureOf(const T* weights, const Batches& batches, Linearization* at);
+  template <typename U>
+  void AddCurvatureOf(const U* weights, const EncodedBatches<U>& inputs, const Batches& batches,
+                      std::vector<std::unique_ptr<CurvatureSum<U>>>* sums, Linearization* at);
 
   NetworkShape shape_;
   const EncodedSamples& samples_;
   SampleTerms terms_;
   EncodedBatches<T> inputs_;
   Batches all_batches_;
-  std::optional<LogTerm> error_term_;                          // of MeanAbsLogError
-  std::vector<std::unique_ptr<CurvatureSum>> curvature_sums_;  // one a partition
-  std::vector<std::unique_ptr<GradientSum>> gradient_sums_;
+  bool curvature_in_double_ = false;
+  std::optional<LogTerm> error_term_;  // of MeanAbsLogError
+  // One a partition.
+  std::vector<std::unique_ptr<CurvatureSum<T>>> curvature_sums_;
+  std::vector<std::unique_ptr<CurvatureSum<double>>> exact_curvature_sums_;
+  std::vector<std::unique_ptr<GradientSum<T>>> gradient_sums_;
+  std::vector<std::unique_ptr<GradientSum<double>>> curve_sums_;
 };
 
 extern template class SampleSums<float>;

@@ -32,6 +32,8 @@ Fields OptionFields(FitOptions* options) {
       SolversHelp()));
   fields.Add(Choice("precision", &options->precision, kPrecisions,
                     "floating-point precision of the network"));
+  fields.Add(Switch("acceleration", &options->acceleration,
+                    "lm: bend each step along the residuals (geodesic acceleration)"));
   fields.Add(Integer("first_samples", &schedule->first_samples, AtLeast(1),
                      "training samples to start with; --samples or more: all of them"));
   fields.Add(

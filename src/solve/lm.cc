@@ -7,6 +7,8 @@
 //     foremost K. Madsen, H. Nielsen, O. Tingleff. Methods for Non-Linear Least Squares Problems. 2004
 //     (the radius), and A. Conn, N. Gould, P. Toint. Trust-Region Methods. SIAM 2000, algorithm 10.1.2
 //     (steps that may raise the cost).
+// [2] M. Transtrum, J. Sethna. Improvements to the Levenberg-Marquardt Algorithm for Nonlinear Least-Squares
+//     Minimization. arXiv:1201.5885, 2012: steps with geodesic acceleration.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,6 +28,13 @@ constexpr double kMaxRise = 4.0;    // of the cost over the least one so far
 // The damping is relative to the diagonal of J'J in weights scaled by 1 / (1 + |J_i|), and there at
 // least this: Ceres' default (min_lm_diagonal).
 constexpr double kMinDiagonal = 1e-6;
+
+// A step d + a / 2 follows the residuals' bend if the acceleration a is at most so long, against d, in the
+// norm of the damping; else it is d. 0.75 in [2].
+constexpr double kMaxAcceleration = 0.75;
+// Rounding of J'J bounds the radius: once A + D didn't factor, it stays below a part of that one, which grows
+// with each step taken.
+constexpr double kRadiusAfterFailure = 1.0 / 3.0, kRadiusRelief = 1.1;
 
 // Says how good a step is. It compares with a cost of up to kMaxRisingSteps steps before, so that the cost may
 // rise for a while.
@@ -73,8 +82,11 @@ class StepJudge {
 
 class LevenbergMarquardt {
  public:
-  LevenbergMarquardt(Objective* objective, const StageOptions& options, std::vector<double>* best)
+  // accelerates: steps with geodesic acceleration.
+  LevenbergMarquardt(Objective* objective, bool accelerates, const StageOptions& options,
+                     std::vector<double>* best)
       : objective_(objective),
+        accelerates_(accelerates),
         options_(options),
         best_(best),
         x_(*best),
@@ -101,6 +113,11 @@ class LevenbergMarquardt {
       const double change = std::abs(at_.cost - cost);
       if (!(quality > kMinDecrease)) {
         ++(has_step ? result_.rejected_steps : result_.failed_factorizations);
+        if (!has_step && !curvature_in_double_) {
+          if (!Refine()) break;
+          continue;
+        }
+        if (!has_step) max_radius_ = kRadiusAfterFailure * radius_;
         ShrinkRadius();
         if (Stalled(change)) break;
         continue;
@@ -128,8 +145,18 @@ class LevenbergMarquardt {
   // J'J from another part of the samples each time.
   bool Linearize(const std::vector<double>& x, Linearization* at) {
     const std::size_t parts = objective_->num_samples() / options_.curvature_samples;
-    return objective_->Linearize(x.data(), {linearizations_++, std::max<std::size_t>(parts, 1)},
-                                 at);
+    const CurvaturePart part = {linearizations_++, std::max<std::size_t>(parts, 1)};
+    if (!objective_->Linearize(x.data(), part, at)) return false;
+    part_ = part;
+    return true;
+  }
+
+  // J'J in double precision: single has been enough as long as it factored. False if it isn't finite.
+  bool Refine() {
+    curvature_in_double_ = true;
+    objective_->SumCurvatureInDouble();
+    return Linearize(x_, &at_) ||
+           Stop(Termination::kDiverged, "the cost or a derivative isn't finite");
   }
 
   bool MayContinue(double cost) {
@@ -193,13 +220,13 @@ class LevenbergMarquardt {
   // isn't finite. predicted: the decrease of the cost that the linear model promises, > 0.
   bool ComputeStep(double* predicted) {
     const std::size_t p = x_.size();
-    std::vector<double> damping(p);
+    damping_.resize(p);
     for (std::size_t i = 0; i < p; ++i) {
       const double scaled = scale_[i] * scale_[i] * Diagonal(i);
-      damping[i] = std::max(scaled, kMinDiagonal) / (radius_ * scale_[i] * scale_[i]);
+      damping_[i] = std::max(scaled, kMinDiagonal) / (radius_ * scale_[i] * scale_[i]);
       double* row = cholesky_.row(static_cast<int>(i));
       std::copy_n(&at_.hessian[i * p], i + 1, row);
-      row[i] += damping[i];
+      row[i] += damping_[i];
       step_[i] = -at_.gradient[i];
     }
     if (!cholesky_.Factor()) return false;
@@ -207,10 +234,24 @@ class LevenbergMarquardt {
     // -(g's + s'As / 2) with As = -g - Ds: half of (s'Ds - g's).
     *predicted = 0.0;
     for (std::size_t i = 0; i < p; ++i) {
-      *predicted += 0.5 * step_[i] * (damping[i] * step_[i] - at_.gradient[i]);
+      *predicted += 0.5 * step_[i] * (damping_[i] * step_[i] - at_.gradient[i]);
       trial_[i] = x_[i] + step_[i];
     }
+    if (accelerates_) Accelerate();
     return std::isfinite(*predicted) && *predicted > 0.0;
+  }
+
+  // trial += a / 2, a = -(A + D)^-1 J'r'' with r'' along the step, unless a is too long.
+  void Accelerate() {
+    std::vector<double> acceleration = objective_->Curve(x_.data(), step_.data(), part_);
+    cholesky_.Solve(acceleration.data());
+    double length = 0.0, step_length = 0.0;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      length += damping_[i] * acceleration[i] * acceleration[i];
+      step_length += damping_[i] * step_[i] * step_[i];
+    }
+    if (!(length <= kMaxAcceleration * kMaxAcceleration * step_length)) return;
+    for (std::size_t i = 0; i < x_.size(); ++i) trial_[i] -= 0.5 * acceleration[i];
   }
 
   void ShrinkRadius() {
@@ -220,18 +261,22 @@ class LevenbergMarquardt {
 
   void GrowRadius(double quality) {
     radius_ /= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * quality - 1.0, 3));
-    radius_ = std::min(radius_, kMaxRadius);
+    max_radius_ = std::min(kRadiusRelief * max_radius_, kMaxRadius);
+    radius_ = std::min(radius_, max_radius_);
     shrink_ = 2.0;
   }
 
   Objective* objective_;
+  const bool accelerates_;
   const StageOptions& options_;
   std::vector<double>* best_;
-  std::vector<double> x_, trial_, step_, scale_;
+  std::vector<double> x_, trial_, step_, scale_, damping_;
+  CurvaturePart part_;  // of at_
   Linearization at_, next_;
   Cholesky cholesky_;
+  bool curvature_in_double_ = false;
   std::size_t linearizations_ = 0;
-  double radius_ = kFirstTrustRegionRadius, shrink_ = 2.0;
+  double radius_ = kFirstTrustRegionRadius, max_radius_ = kMaxRadius, shrink_ = 2.0;
   StageResult result_;
 };
 
@@ -240,7 +285,7 @@ class LevenbergMarquardt {
 // Diverged if the objective isn't finite at the start; converged at once where its gradient is 0.
 StageResult MinimizeLm(const StageInput& input, const StageOptions& options,
                        std::vector<double>* weights) {
-  return LevenbergMarquardt(input.objective, options, weights).Run();
+  return LevenbergMarquardt(input.objective, input.options.acceleration, options, weights).Run();
 }
 
 }  // namespace pbnbrdf

@@ -30,6 +30,8 @@ class Separable final : public Objective {
     return std::isfinite(*cost);
   }
   bool Linearize(const double*, CurvaturePart, Linearization*) override { return false; }
+  std::vector<double> Curve(const double*, const double*, CurvaturePart) override { return {}; }
+  void SumCurvatureInDouble() override {}
   double HessianRounding() const override { return 1e-15; }
   double MeanAbsLogError(const double*) override { return 0.0; }
   const EnergyWork& energy_work() const override { return energy_work_; }

@@ -107,6 +107,7 @@ TEST(FitBrdf, CondensedTakesTheStepsOfTheAutodiffProblem) {
 TEST(FitBrdf, LmTakesTheStepsOfCeres) {
   FitProblem problem = SmallProblem();
   FitOptions options;
+  options.acceleration = false;
   options.precision = Precision::kDouble;
   options.schedule.max_iterations = 12;
   options.schedule.function_tolerance = 0.0;

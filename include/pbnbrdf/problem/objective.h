@@ -50,9 +50,17 @@ class Objective {
   virtual bool Linearize(const double* weights, CurvaturePart part, Linearization* at) = 0;
   bool Linearize(const double* weights, Linearization* at) { return Linearize(weights, {}, at); }
 
+  // J'r'' (P), where r'' is the second derivative of the residuals along `direction` (P), weighted as
+  // Linearize does: of the terms over samples, and of the same part of them.
+  virtual std::vector<double> Curve(const double* weights, const double* direction,
+                                    CurvaturePart part) = 0;
+
   // The cost and its gradient (P; J'r where there are residuals) alone. False, with both unspecified,
   // if they aren't finite.
   virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;
+
+  // From now on the samples that J'J is summed over go through passes in double precision.
+  virtual void SumCurvatureInDouble() = 0;
 
   // About the largest error of hessian, relative to its diagonal, that rounding makes.
   virtual double HessianRounding() const = 0;

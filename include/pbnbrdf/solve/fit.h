@@ -55,6 +55,7 @@ struct FitOptions {
   std::string solver = "lm";
   ScheduleOptions schedule;
   AdamOptions adam;
+  bool acceleration = true;  // lm: geodesic acceleration of its steps (lm.cc)
   Precision precision = Precision::kSingle;
   // With the energy term: to end with no directional albedo above 1, by lowering the whole network
   // if the term didn't get there. The published scripts don't.
