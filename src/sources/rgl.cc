@@ -18,9 +18,9 @@ constexpr double kLeastJacobian = 1e-6;
 constexpr double kDegree = kPi / 180.0;
 constexpr double kLastKnown = 85.0 * kDegree, kLastEstimated = 89.4 * kDegree;
 constexpr double kLastMeasured = 89.9 * kDegree;
-// Of the best estimate: what is added to values before the logarithm, and how fast certainty falls
-// between nodes. experiments/measured.cc shows the choice.
-constexpr double kLogOffset = 0.03, kDoubt = 8.0;
+// Of the best estimate: what is added to values before the logarithm, the cubic's share of it, and how fast
+// certainty falls between nodes. experiments/measured.cc shows the choice.
+constexpr double kLogOffset = 0.03, kCubicShare = 0.75, kDoubt = 8.0;
 constexpr float kLongestWave = 1e5f;       // nm
 constexpr std::size_t kShownText = 60;     // of a file's own description
 constexpr std::size_t kMostIsotropic = 2;  // phi_i nodes
@@ -299,8 +299,8 @@ Rgb RglBrdf::Tables::Value(const DirectionPair& pair, Interpolation interpolatio
   const double scale = place.scale / pair.wo.z;
   Rgb value;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double v =
-        interpolation == Interpolation::kLinear ? Linear(place, c) : MonotoneCubic(place, c);
+    double v = Linear(place, c);
+    if (interpolation == Interpolation::kBest) v += kCubicShare * (MonotoneCubic(place, c) - v);
     value[c] = v > 0.0 ? std::min(v * scale, kLargestValue) : 0.0;
   }
   return value;
@@ -357,14 +357,14 @@ void RglBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs, std::span<
 }
 
 bool RglBrdf::IsKnown(const DirectionPair& pair) const {
-  const bool is_estimate = interpolation_ == Interpolation::kMonotoneCubic;
+  const bool is_estimate = interpolation_ == Interpolation::kBest;
   const double last =
       std::min<double>(tables_->theta_i.back(), is_estimate ? kLastEstimated : kLastKnown);
   return pair.AboveHorizon() && std::min(pair.wi.z, pair.wo.z) >= std::cos(last);
 }
 
 std::unique_ptr<Brdf> RglBrdf::BestEstimate() const {
-  return std::unique_ptr<Brdf>(new RglBrdf(tables_, Interpolation::kMonotoneCubic));
+  return std::unique_ptr<Brdf>(new RglBrdf(tables_, Interpolation::kBest));
 }
 
 double RglBrdf::Certainty(const DirectionPair& pair) const {

@@ -105,24 +105,30 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-Linearization Reference(const Case& c) {
-  std::vector<double> weights = c.weights;
-  ceres::Problem problem;
-  AddAutodiff(c.problem, Samples(c.problem), EqualStrata(c.problem), weights.data(), &problem);
-  Linearization at;
-  std::vector<double> residuals;
-  ceres::CRSMatrix crs;
-  EXPECT_TRUE(problem.Evaluate({}, &at.cost, &residuals, &at.gradient, &crs));
-  RowMajor jacobian = RowMajor::Zero(crs.num_rows, crs.num_cols);
-  for (int row = 0; row < crs.num_rows; ++row) {
-    for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
-      jacobian(row, crs.cols[k]) += crs.values[k];
+// By jets through the whole network.
+struct Reference {
+  Reference(const FitProblem& description, std::vector<double> weights) {
+    ceres::Problem problem;
+    AddAutodiff(description, Samples(description), EqualStrata(description), weights.data(),
+                &problem);
+    std::vector<double> values;
+    ceres::CRSMatrix crs;
+    EXPECT_TRUE(problem.Evaluate({}, &at.cost, &values, &at.gradient, &crs));
+    residuals = Eigen::Map<Eigen::VectorXd>(values.data(), crs.num_rows);
+    jacobian = RowMajor::Zero(crs.num_rows, crs.num_cols);
+    for (int row = 0; row < crs.num_rows; ++row) {
+      for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
+        jacobian(row, crs.cols[k]) += crs.values[k];
+      }
     }
+    const RowMajor hessian = jacobian.transpose() * jacobian;
+    at.hessian.assign(hessian.data(), hessian.data() + hessian.size());
   }
-  const RowMajor hessian = jacobian.transpose() * jacobian;
-  at.hessian.assign(hessian.data(), hessian.data() + hessian.size());
-  return at;
-}
+
+  Linearization at;
+  Eigen::VectorXd residuals;
+  RowMajor jacobian;
+};
 
 // The largest deviations, in units of what rounding is relative to: the cost; |J_i| |r|; |J_i|
 // |J_j|.
@@ -165,7 +171,8 @@ class ObjectiveTest : public testing::TestWithParam<Case> {
   }
 
   static void ExpectAgreement(Precision precision, double tolerance) {
-    const Deviation worst = Compare(Fast(precision), Reference(GetParam()));
+    const Deviation worst =
+        Compare(Fast(precision), Reference(GetParam().problem, GetParam().weights).at);
     RecordProperty("worst_cost", std::to_string(worst.cost / tolerance));
     RecordProperty("worst_gradient", std::to_string(worst.gradient / tolerance));
     RecordProperty("worst_hessian", std::to_string(worst.hessian / tolerance));
@@ -196,6 +203,37 @@ TEST_P(ObjectiveTest, GradientAloneIsTheSame) {
   ASSERT_TRUE(objective->Gradient(weights, &alone.cost, alone.gradient.data()));
   EXPECT_LE(Compare(alone, at).cost, 1e-12);
   EXPECT_LE(Compare(alone, at).gradient, 1e-12);
+}
+
+TEST_P(ObjectiveTest, CurvatureMayBeInDoubleAlone) {
+  FitProblem problem = GetParam().problem;
+  problem.terms.SetWeight("energy", 0.0);  // whose passes stay in single precision
+  const auto objective = MakeObjective(problem, Precision::kSingle, Samples(problem));
+  objective->SumCurvatureInDouble();
+  Linearization at;
+  ASSERT_TRUE(objective->Linearize(GetParam().weights.data(), &at));
+  EXPECT_LE(Compare(at, Reference(problem, GetParam().weights).at).hessian, 1e-10);
+}
+
+TEST_P(ObjectiveTest, CurveAgreesWithSecondDifferencesOfJets) {
+  auto [name, problem, weights] = GetParam();
+  problem.terms.SetWeight("energy", 0.0);  // of which Curve takes no notice
+  problem.terms.loss = Loss::kL2;          // for jets would differentiate the robust weights, too
+  const std::vector<double> direction = RandomWeights(problem.Shape(), 0.5, /*seed=*/5);
+  const auto residuals_at = [&](double step) {
+    std::vector<double> moved = weights;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += step * direction[i];
+    return Reference(problem, moved).residuals;
+  };
+  const double h = 2e-3;
+  const Reference here(problem, weights);
+  const Eigen::VectorXd second =
+      (residuals_at(h) - 2.0 * here.residuals + residuals_at(-h)) / (h * h);
+  const Eigen::VectorXd expected = here.jacobian.transpose() * second;
+  const auto curve = MakeObjective(problem, Precision::kSingle, Samples(problem))
+                         ->Curve(weights.data(), direction.data(), {});
+  const Eigen::Map<const Eigen::VectorXd> actual(curve.data(), expected.size());
+  EXPECT_LE((actual - expected).norm(), 1e-4 * expected.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, ObjectiveTest, testing::ValuesIn(Cases()),

@@ -355,6 +355,17 @@ TEST(FitBrdf, SaysWhenSinglePrecisionLimitsIt) {
   EXPECT_FALSE(FitBrdf(gold.network, problem, options).summary.precision_limited);
 }
 
+TEST(FitBrdf, AccelerationGetsFurther) {
+  FitProblem problem = SmallProblem();
+  FitOptions options;
+  options.precision = Precision::kDouble;
+  options.schedule.max_iterations = 60;
+  const double bent = CostTrace(problem, options).back();
+  options.acceleration = false;
+  const double straight = CostTrace(problem, options).back();
+  EXPECT_LT(bent, 0.8 * straight);
+}
+
 TEST(FitBrdf, CurvatureOfAPartOfTheSamplesServes) {
   FitProblem problem = SmallProblem();
   FitOptions options;
