@@ -27,7 +27,7 @@ constexpr double kSameDirection = 0.02;  // radians at the normal, less towards 
 constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
-constexpr int kMaxRounds = 24, kRoundIterations = 40, kHastyIterations = 4;
+constexpr int kMaxRounds = 24, kRoundIterations = 12, kHastyIterations = 4;
 constexpr double kSmallCorrection = 0.05;   // of the mean absolute log error
 constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
 constexpr double kMinCost = 1e-7;           // of the other terms, for the weight of this one

@@ -39,7 +39,7 @@ class Training {
   bool HasAllSamples() const { return samples_.size() == max_samples_; }
   void TakeMoreSamples();
 
-  // Whether J'J is summed over a part of the samples.
+  // Whether J'J is summed over a part of the samples, and may be over more of them.
   bool HasPartOfCurvature() const;
   void TakeMoreCurvature();
 

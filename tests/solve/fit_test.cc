@@ -357,9 +357,11 @@ TEST(FitBrdf, SaysWhenSinglePrecisionLimitsIt) {
 
 TEST(FitBrdf, AccelerationGetsFurther) {
   FitProblem problem = SmallProblem();
+  problem.network.hidden = {12, 12};
+  problem.sampling.samples = 4000;
   FitOptions options;
   options.precision = Precision::kDouble;
-  options.schedule.max_iterations = 60;
+  options.schedule.max_iterations = 100;
   const double bent = CostTrace(problem, options).back();
   options.acceleration = false;
   const double straight = CostTrace(problem, options).back();

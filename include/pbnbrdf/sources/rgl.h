@@ -41,7 +41,7 @@ class RglBrdf final : public Brdf {
   bool IsKnown(const DirectionPair& pair) const override;
 
   // The same tables, interpolated over theta_i between the format's own way, linear, and a monotone cubic [2]
-  // of log(v + 0.03), v being a table's value: a quarter of one and three of the other. That is nearer to
+  // of log(v + 0.03), v being a table's value: three tenths of one and seven of the other. That is nearer to
   // measurements that were left out than either.
   std::unique_ptr<Brdf> BestEstimate() const override;
 
