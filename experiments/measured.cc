@@ -98,7 +98,8 @@ class Study {
         scene_(scene),
         errors_({"material", "measured: published", "ours", "all: published", "ours", "max albedo",
                  "s"}),
-        left_out_({"material", "angle", "RGL's interpolation", "best estimate", "ours", "ratio"}),
+        left_out_({"material", "angle", "reciprocal floor", "RGL's interpolation", "best estimate",
+                   "ours", "ratio"}),
         pictures_({"material", "symmetric", "published", "ours", "FLIP: published", "ours",
                    "ours to target"}) {}
 
@@ -157,6 +158,7 @@ class Study {
       left_out_ratios_.push_back(ours / theirs);
       left_out_errors_.push_back(ours);
       left_out_.Add({name, Significant(angles[k] * 180.0 / std::numbers::pi, 3),
+                     Significant(ReciprocalFloor(samples, *material.BestEstimate()), 3),
                      Significant(theirs, 3), Significant(ErrorAt(samples, *rest.BestEstimate()), 3),
                      Significant(ours, 3), Significant(ours / theirs, 3)});
     }

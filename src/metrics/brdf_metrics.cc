@@ -63,7 +63,8 @@ std::vector<double> MeanAzimuths(const Brdf& brdf) {
   return azimuths;
 }
 
-// Mean over channels and a midpoint grid of angles of function(f(pair) - f(swapped pair)). The
+// Mean over channels and a midpoint grid of angles of function(f(pair) - f(swapped pair)), which counts as 0
+// above the horizon where f isn't known, as at grazing angles of measurements. The
 // phi_d are (k + offset) pi / n_phi.
 template <typename Function>
 double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi, double offset,
@@ -89,6 +90,7 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
     brdf.EvaluateUnclipped(swapped, back);
     const double weight = 2.0 * t / (3.0 * n_theta_h * static_cast<double>(pairs.size()));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
+      if (pairs[n].AboveHorizon() && !(brdf.IsKnown(pairs[n]) && brdf.IsKnown(swapped[n]))) continue;
       for (int c = 0; c < 3; ++c) rows[h] += weight * function(there[n][c] - back[n][c]);
     }
   });

@@ -20,7 +20,7 @@ constexpr double kOverfit = 1.1;
 // kIdleFall over kIdleIterations: then nothing helps. Of these numbers' neighbours none was better over
 // the materials of experiments/solver_comparison.
 constexpr std::size_t kSlowIterations = 6, kIdleIterations = 25;
-constexpr double kSlowFall = 0.3, kIdleFall = 0.03;
+constexpr double kSlowFall = 0.3, kIdleFall = 0.02;
 
 // Whether a number that is watched has all but ceased to fall.
 class Slowdown {

@@ -11,7 +11,7 @@ namespace pbnbrdf {
 namespace {
 
 // f = 1 + sin theta_d cos phi_d: exchanging wi and wo negates the second part.
-class SkewedBrdf final : public Brdf {
+class SkewedBrdf : public Brdf {
  public:
   void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                          std::span<Rgb> values) const override {
@@ -28,6 +28,18 @@ TEST(Reciprocity, OfASkewedBrdfIsThatOfTheIntegrals) {
   const Reciprocity r = MeasureReciprocity(SkewedBrdf());
   EXPECT_NEAR(r.hrl, 1.0, 1e-3);
   EXPECT_NEAR(r.hcl, 4.0 / kPi, 1e-3);
+}
+
+class UnknownSkewedBrdf final : public SkewedBrdf {
+ public:
+  bool IsKnown(const DirectionPair&) const override { return false; }
+};
+
+TEST(Reciprocity, OfWhatIsNotKnownDoesNotCount) {
+  const double all = MeasureReciprocity(SkewedBrdf()).hrl;
+  const double below = MeasureReciprocity(UnknownSkewedBrdf()).hrl;
+  EXPECT_GT(below, 0.1 * all);
+  EXPECT_LT(below, 0.9 * all);
 }
 
 // f = 1 + sin theta_d cos phi_d cos phi_h.

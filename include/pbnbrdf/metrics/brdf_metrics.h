@@ -40,7 +40,7 @@ ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf
 
 // Mean over the whole domain of angles, below the horizon too, and channels, by the midpoint rule
 // with theta_h = (pi/2) t^2; over phi_h too if the Brdf is anisotropic. phi_d + pi is the exchange
-// of wi and wo.
+// of wi and wo. Above the horizon, where f isn't known in both orders, the difference counts as 0.
 struct Reciprocity {
   double hrl = 0.0;  // eq. 8: mean square of f(phi_d) - f(phi_d + pi), phi_d in [0, pi]
   double hcl = 0.0;  // eq. 9: mean |f(0) - f(pi)|
