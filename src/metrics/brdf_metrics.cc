@@ -90,7 +90,8 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
     brdf.EvaluateUnclipped(swapped, back);
     const double weight = 2.0 * t / (3.0 * n_theta_h * static_cast<double>(pairs.size()));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
-      if (pairs[n].AboveHorizon() && !(brdf.IsKnown(pairs[n]) && brdf.IsKnown(swapped[n]))) continue;
+      if (pairs[n].AboveHorizon() && !(brdf.IsKnown(pairs[n]) && brdf.IsKnown(swapped[n])))
+        continue;
       for (int c = 0; c < 3; ++c) rows[h] += weight * function(there[n][c] - back[n][c]);
     }
   });

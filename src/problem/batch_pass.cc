@@ -130,9 +130,7 @@ void BatchPass<T>::AddGradient(const T* weights, const T* input, std::size_t b, 
 
 template <typename T>
 void BatchPass<T>::AddCurve(const WeightsAlong& weights, const T* input, std::size_t b, int size,
-                            T* gradient)
-  requires std::same_as<T, double>
-{
+                            T* gradient) requires std::same_as<T, double> {
   constexpr double kPerStep = 1.0 / (WeightsAlong::kStep * WeightsAlong::kStep);
   second_.resize(batches_.size());
   for (std::size_t t = 0; t < batches_.size(); ++t) {

@@ -57,8 +57,8 @@ class BatchPass {
                    double* cost);
 
   // Adds J'r'' to gradient (P): r'', the second derivative along the line, in the place of r.
-  void AddCurve(const WeightsAlong& weights, const T* input, std::size_t b, int size, T* gradient)
-    requires std::same_as<T, double>;
+  void AddCurve(const WeightsAlong& weights, const T* input, std::size_t b, int size,
+                T* gradient) requires std::same_as<T, double>;
 
  private:
   static constexpr int kChannels = NetworkShape::kChannels;
@@ -74,10 +74,10 @@ class BatchPass {
 
   const SampleTerms& terms_;
   BatchedMlp<T> mlp_;
-  std::vector<TermBatch> batches_;  // one a term
-  AlignedVector<double> z_;         // the outputs, kChannels x kBatch
-  AlignedVector<double> sum_;       // of rows times residuals, kChannels x kBatch
-  AlignedVector<T> residuals_;      // row after row
+  std::vector<TermBatch> batches_;             // one a term
+  AlignedVector<double> z_;                    // the outputs, kChannels x kBatch
+  AlignedVector<double> sum_;                  // of rows times residuals, kChannels x kBatch
+  AlignedVector<T> residuals_;                 // row after row
   std::vector<AlignedVector<double>> second_;  // of AddCurve: r'', a term after the other
 };
 

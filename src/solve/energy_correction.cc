@@ -116,8 +116,7 @@ VectorXd AlbedoGradient(const Rows& rows, const std::vector<AlbedoNode>& nodes) 
 class TypicalChange {
  public:
   TypicalChange(const NetworkShape& shape, const std::vector<double>& weights)
-      : features_(
-            RowsAt(shape, weights, TypicalPairs(IsIsotropic(shape.encoding())), 0).features) {
+      : features_(RowsAt(shape, weights, TypicalPairs(IsIsotropic(shape.encoding())), 0).features) {
     MatrixXd squares = features_.transpose() * features_;
     squares.diagonal().array() += kRidge * squares.trace() / static_cast<double>(squares.rows());
     squares_.compute(squares);
@@ -233,8 +232,8 @@ class Corrector {
   double MeanChange() {
     double largest = 0.0;
     for (int c = 0; c < shape_.num_outputs(); ++c) {
-      largest = std::max(
-          largest, typical_.MeanAbs(LastWeights(weights_, c) - LastWeights(&before_, c)));
+      largest =
+          std::max(largest, typical_.MeanAbs(LastWeights(weights_, c) - LastWeights(&before_, c)));
     }
     return largest;
   }

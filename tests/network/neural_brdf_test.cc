@@ -110,8 +110,10 @@ TEST(NeuralBrdf, FilesThatAreNoNetworkAreNamed) {
   EXPECT_EQ(read([](auto&) {}), "");
   EXPECT_THAT(read([](auto& f) { f.metadata.erase("encoding"); }),
               HasSubstr("n.safetensors: not a fitted network: __metadata__ lacks encoding"));
-  EXPECT_THAT(read([](auto& f) { f.metadata["encoding"] = "polar"; }),
-              HasSubstr("encoding=polar is not one of cartesian | reciprocal | multiscale | elevations | merl"));
+  EXPECT_THAT(
+      read([](auto& f) { f.metadata["encoding"] = "polar"; }),
+      HasSubstr(
+          "encoding=polar is not one of cartesian | reciprocal | multiscale | elevations | merl"));
   EXPECT_THAT(read([](auto& f) { f.metadata["output"] = "exp"; }), HasSubstr("output=exp"));
   EXPECT_THAT(read([](auto& f) { f.tensors.erase("fc2.weight"); }), HasSubstr("5 tensors"));
   EXPECT_THAT(read([](auto& f) { f.tensors["fc2.weight"] = f.tensors["fc1.weight"]; }),
