@@ -26,7 +26,7 @@ struct SampleTerms {
 };
 
 // Weights at three points of a line: -kStep, 0 and kStep times a direction away. Second differences over
-// them are second derivatives to 1e-6 or so of their size: the passes must be in double precision.
+// them are second derivatives but for terms of kStep^2; they need passes in double precision.
 struct WeightsAlong {
   static constexpr double kStep = 1e-3;
   WeightsAlong(const double* weights, const double* direction, int size);

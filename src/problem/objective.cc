@@ -42,11 +42,8 @@ class SumObjective final : public Objective {
   void SetEnergy(double weight, std::span<const EnergyStratum> strata) override {
     energy_.Set(weight, strata);
   }
-  void SumCurvatureInDouble() override {
-    sums_.SumCurvatureInDouble();
-    rounding_ = std::numeric_limits<double>::epsilon();
-  }
-  double HessianRounding() const override { return 10.0 * rounding_; }
+  bool SumCurvatureInDouble() override { return sums_.SumCurvatureInDouble(); }
+  double HessianRounding() const override { return 10.0 * std::numeric_limits<T>::epsilon(); }
   const EnergyWork& energy_work() const override { return energy_.work(); }
 
   double Cost(const double* weights) override {
@@ -93,7 +90,6 @@ class SumObjective final : public Objective {
   std::unique_ptr<EncodedSamples> owned_;
   NetworkShape shape_;
   SampleSums<T> sums_;
-  double rounding_ = std::numeric_limits<T>::epsilon();  // of the sums of J'J
   EnergyTerm<T> energy_;
 };
 

@@ -136,18 +136,10 @@ std::vector<double> SampleSums<T>::Curve(const double* weights, const double* di
                                          CurvaturePart part) {
   const Division division = Divide(part);
   const WeightsAlong along(weights, direction, shape_.num_weights());
-  const Batches& batches = division.part;
-  MakeSums(shape_, terms_, batches.size(), &curve_sums_);
-  const std::size_t used = ForEachPartition(batches.size(), [&](std::size_t p, std::size_t step) {
-    GradientSum<double>& sum = *curve_sums_[p];
-    sum.Clear();
-    for (std::size_t i = p; i < batches.size(); i += step) {
-      const std::size_t b = batches[i];
-      sum.AddBatch([&](double* gradient) {
-        sum.pass.AddCurve(along, samples_.inputs().batch(b), b, inputs_.batch_size(b), gradient);
+  const std::size_t used = SumGradients(
+      division.part, &curve_sums_, [&](GradientSum<double>* sum, std::size_t b, double* gradient) {
+        sum->pass.AddCurve(along, samples_.inputs().batch(b), b, inputs_.batch_size(b), gradient);
       });
-    }
-  });
   std::vector<double> total(shape_.num_weights(), 0.0);
   for (std::size_t p = 0; p < used; ++p) {
     for (std::size_t k = 0; k < total.size(); ++k) {
@@ -184,21 +176,34 @@ void SampleSums<T>::AddCurvatureOf(const U* weights, const EncodedBatches<U>& in
   sums->front()->sums.AddTo(at->gradient.data(), at->hessian.data());
 }
 
+// Sums up what add(sum, b, gradient) adds to a gradient for each of some batches b. Returns how many
+// partial sums there are.
+template <typename T>
+template <typename U, typename Add>
+std::size_t SampleSums<T>::SumGradients(const Batches& batches,
+                                        std::vector<std::unique_ptr<GradientSum<U>>>* sums,
+                                        Add add) {
+  MakeSums(shape_, terms_, batches.size(), sums);
+  return ForEachPartition(batches.size(), [&](std::size_t p, std::size_t step) {
+    GradientSum<U>& sum = *(*sums)[p];
+    sum.cost = 0.0;
+    std::fill(sum.sum.begin(), sum.sum.end(), 0.0);
+    for (std::size_t i = p; i < batches.size(); i += step) {
+      std::fill(sum.of_batch.begin(), sum.of_batch.end(), U(0));
+      add(&sum, batches[i], sum.of_batch.data());
+      for (std::size_t k = 0; k < sum.sum.size(); ++k) sum.sum[k] += sum.of_batch[k];
+    }
+  });
+}
+
 // Adds cost and J'r of some batches.
 template <typename T>
 void SampleSums<T>::AddGradientOf(const T* weights, const Batches& batches, Linearization* at) {
-  MakeSums(shape_, terms_, batches.size(), &gradient_sums_);
-  const std::size_t used = ForEachPartition(batches.size(), [&](std::size_t p, std::size_t step) {
-    GradientSum<T>& sum = *gradient_sums_[p];
-    sum.Clear();
-    for (std::size_t i = p; i < batches.size(); i += step) {
-      const std::size_t b = batches[i];
-      sum.AddBatch([&](T* gradient) {
-        sum.pass.AddGradient(weights, inputs_.batch(b), b, inputs_.batch_size(b), gradient,
-                             &sum.cost);
+  const std::size_t used =
+      SumGradients(batches, &gradient_sums_, [&](GradientSum<T>* sum, std::size_t b, T* gradient) {
+        sum->pass.AddGradient(weights, inputs_.batch(b), b, inputs_.batch_size(b), gradient,
+                              &sum->cost);
       });
-    }
-  });
   for (std::size_t p = 0; p < used; ++p) {
     const GradientSum<T>& sum = *gradient_sums_[p];
     at->cost += sum.cost;

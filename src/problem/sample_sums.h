@@ -1,9 +1,10 @@
 // sample_sums.h: sums over samples, shared among threads: the cost of the terms over samples, J'r and J'J.
 #pragma once
 
-#include <algorithm>
+#include <concepts>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pbnbrdf/problem/linearization.h"
@@ -34,8 +35,10 @@ class SampleSums {
   void AddCurvature(const T* weights, const double* exact_weights, CurvaturePart part,
                     Linearization* at);
 
-  // The samples of the part go through passes in double precision from now on.
-  void SumCurvatureInDouble() { curvature_in_double_ = true; }
+  // Objective::SumCurvatureInDouble.
+  bool SumCurvatureInDouble() {
+    return !std::same_as<T, double> && !std::exchange(curvature_in_double_, true);
+  }
 
   // Objective::Curve; always in double precision.
   std::vector<double> Curve(const double* weights, const double* direction, CurvaturePart part);
@@ -66,21 +69,12 @@ class SampleSums {
     AlignedVector<U> of_batch;
     std::vector<double> sum;
     double cost = 0.0;
-
-    void Clear() {
-      cost = 0.0;
-      std::fill(sum.begin(), sum.end(), 0.0);
-    }
-    // Calls add(U* gradient) for one batch.
-    template <typename Add>
-    void AddBatch(Add add) {
-      std::fill(of_batch.begin(), of_batch.end(), U(0));
-      add(of_batch.data());
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += of_batch[k];
-    }
   };
 
   Division Divide(CurvaturePart part) const;
+  template <typename U, typename Add>
+  std::size_t SumGradients(const Batches& batches,
+                           std::vector<std::unique_ptr<GradientSum<U>>>* sums, Add add);
   void AddGradientOf(const T* weights, const Batches& batches, Linearization* at);
   template <typename U>
   void AddCurvatureOf(const U* weights, const EncodedBatches<U>& inputs, const Batches& batches,

@@ -52,7 +52,7 @@ Fields OptionFields(FitOptions* options) {
                     "stop when an iteration lowers the cost by a smaller part than this"));
   fields.Add(Switch("certify_energy", &options->certify_energy,
                     "with the energy term: make sure that no directional albedo is above 1, if "
-                    "need be by lowering the whole network"));
+                    "need be by lowering f where it is made"));
   fields.Add(Integer("batch", &options->adam.batch, AtLeast(1), "adam: samples in a step"));
   fields.Add(Number("learning_rate", &options->adam.learning_rate, Above(0.0), "adam: step size"));
   fields.Add(Integer("energy_angles", &options->adam.energy_angles, Between(1, 1024),

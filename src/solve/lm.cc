@@ -113,8 +113,8 @@ class LevenbergMarquardt {
       const double change = std::abs(at_.cost - cost);
       if (!(quality > kMinDecrease)) {
         ++(has_step ? result_.rejected_steps : result_.failed_factorizations);
-        if (!has_step && !curvature_in_double_) {
-          if (!Refine()) break;
+        if (!has_step && objective_->SumCurvatureInDouble()) {
+          if (!Relinearize()) break;
           continue;
         }
         if (!has_step) max_radius_ = kRadiusAfterFailure * radius_;
@@ -151,10 +151,8 @@ class LevenbergMarquardt {
     return true;
   }
 
-  // J'J in double precision: single has been enough as long as it factored. False if it isn't finite.
-  bool Refine() {
-    curvature_in_double_ = true;
-    objective_->SumCurvatureInDouble();
+  // At the same weights. False if something isn't finite.
+  bool Relinearize() {
     return Linearize(x_, &at_) ||
            Stop(Termination::kDiverged, "the cost or a derivative isn't finite");
   }
@@ -274,7 +272,6 @@ class LevenbergMarquardt {
   CurvaturePart part_;  // of at_
   Linearization at_, next_;
   Cholesky cholesky_;
-  bool curvature_in_double_ = false;
   std::size_t linearizations_ = 0;
   double radius_ = kFirstTrustRegionRadius, max_radius_ = kMaxRadius, shrink_ = 2.0;
   StageResult result_;

@@ -182,7 +182,7 @@ void Training::TakeMoreCurvature() { curvature_samples_ *= kCurvatureGrowth; }
 
 void Training::SetEnergy(double weight, std::vector<EnergyStratum> strata) {
   strata_ = std::move(strata);
-  curvature_samples_ = options_.schedule.curvature_samples;
+  curvature_samples_ = options_.schedule.curvature_samples;  // rounds needn't be exact
   problem_.terms.SetWeight("energy", weight);
   for (Objective* objective : {objective_.get(), validation_.get()}) {
     objective->SetEnergy(weight, strata_);

@@ -31,7 +31,7 @@ class Separable final : public Objective {
   }
   bool Linearize(const double*, CurvaturePart, Linearization*) override { return false; }
   std::vector<double> Curve(const double*, const double*, CurvaturePart) override { return {}; }
-  void SumCurvatureInDouble() override {}
+  bool SumCurvatureInDouble() override { return false; }
   double HessianRounding() const override { return 1e-15; }
   double MeanAbsLogError(const double*) override { return 0.0; }
   const EnergyWork& energy_work() const override { return energy_work_; }

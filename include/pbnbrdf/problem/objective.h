@@ -59,8 +59,9 @@ class Objective {
   // if they aren't finite.
   virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;
 
-  // From now on the samples that J'J is summed over go through passes in double precision.
-  virtual void SumCurvatureInDouble() = 0;
+  // From now on the samples that J'J is summed over go through passes in double precision. False if they do
+  // so already.
+  virtual bool SumCurvatureInDouble() = 0;
 
   // About the largest error of hessian, relative to its diagonal, that rounding makes.
   virtual double HessianRounding() const = 0;

@@ -57,7 +57,7 @@ struct FitOptions {
   AdamOptions adam;
   bool acceleration = true;  // lm: geodesic acceleration of its steps (lm.cc)
   Precision precision = Precision::kSingle;
-  // With the energy term: to end with no directional albedo above 1, by lowering the whole network
+  // With the energy term: to end with no directional albedo above 1, by lowering f where it is made
   // if the term didn't get there. The published scripts don't.
   bool certify_energy = true;
   int threads = 0;  // 0: as many as the machine has
