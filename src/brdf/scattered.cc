@@ -16,6 +16,7 @@ constexpr double kSmallestCosine = 1e-4;
 constexpr std::size_t kNeighbors = 8;
 // Squared distance of measurements at one place: rounding of their angles.
 constexpr double kSamePlace = 1e-20;
+constexpr double kSameIncidence = 1e-3;  // radians: rounding of text
 
 ScatteredData Usable(ScatteredData data) {
   data.left_out += std::erase_if(data.samples, [](const BrdfSample& s) {
@@ -59,6 +60,10 @@ double ShepardWeight(double squared, double nearest, double farthest) {
   const double distance = std::sqrt(squared), end = std::sqrt(farthest);
   const double weight = (end - distance) / (end * distance);
   return weight * weight;
+}
+
+double IncidentAngle(const BrdfSample& sample) {
+  return std::atan2(std::hypot(sample.pair.wi.x, sample.pair.wi.y), sample.pair.wi.z);
 }
 
 }  // namespace
@@ -116,6 +121,29 @@ bool ScatteredBrdf::IsKnown(const DirectionPair& pair) const {
 double ScatteredBrdf::Certainty(const DirectionPair& pair) const {
   constexpr double kHalf = kReach / 4.0;
   return 1.0 / (1.0 + SquaredDistance(pair) / (kHalf * kHalf));
+}
+
+std::vector<double> ScatteredBrdf::IncidentAngles() const {
+  std::vector<double> all, angles;
+  for (const BrdfSample& sample : data_.samples) all.push_back(IncidentAngle(sample));
+  std::sort(all.begin(), all.end());
+  for (auto begin = all.begin(); begin != all.end();) {
+    const auto end = std::upper_bound(begin, all.end(), *begin + kSameIncidence);
+    if (static_cast<std::size_t>(end - begin) >= kLeastAtAngle) {
+      angles.push_back(begin[(end - begin) / 2]);
+    }
+    begin = end;
+  }
+  return angles;
+}
+
+std::unique_ptr<Brdf> ScatteredBrdf::WithoutIncidentAngle(std::size_t index) const {
+  const double angle = IncidentAngles()[index];
+  ScatteredData rest = data_;
+  std::erase_if(rest.samples, [&](const BrdfSample& sample) {
+    return std::abs(IncidentAngle(sample) - angle) <= kSameIncidence;
+  });
+  return std::make_unique<ScatteredBrdf>(std::move(rest));
 }
 
 std::string ScatteredBrdf::Description() const {

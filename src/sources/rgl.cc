@@ -384,8 +384,9 @@ std::vector<double> RglBrdf::IncidentAngles() const {
   return {begin, begin + static_cast<std::ptrdiff_t>(tables_->measured_angles())};
 }
 
-RglBrdf RglBrdf::WithoutIncidentAngle(std::size_t index) const {
-  return RglBrdf(std::make_shared<const Tables>(tables_->Without(index)), interpolation_);
+std::unique_ptr<Brdf> RglBrdf::WithoutIncidentAngle(std::size_t index) const {
+  auto rest = std::make_shared<const Tables>(tables_->Without(index));
+  return std::unique_ptr<Brdf>(new RglBrdf(std::move(rest), interpolation_));
 }
 
 bool RglBrdf::IsIsotropic() const { return tables_->isotropic; }

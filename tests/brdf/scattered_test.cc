@@ -163,6 +163,41 @@ std::vector<BrdfSample> Draw(const Brdf& brdf, SampleSet set, std::uint64_t seed
   return DrawSamples(brdf, set, Sampling::kHighlight, 100000, seed);
 }
 
+// Towards 12 directions from each of the angles, and once from another.
+ScatteredData MeasuredAtAngles(const std::vector<double>& angles) {
+  ScatteredData data;
+  for (double theta_i : angles) {
+    for (int k = 0; k < 12; ++k) {
+      const double rounding = 1e-4 * (k % 3);
+      data.samples.push_back(
+          {{FromSpherical(theta_i + rounding, 0.0), FromSpherical(0.1 * k, 1.0)}, {1, 2, 3}});
+    }
+  }
+  data.samples.push_back({{FromSpherical(1.2, 0.0), FromSpherical(angles[1], 2.0)}, {1, 2, 3}});
+  return data;
+}
+
+TEST(Scattered, IncidentAnglesAreThoseOfManyMeasurements) {
+  const ScatteredBrdf brdf(MeasuredAtAngles({0.8, 0.2, 0.5}));
+  const std::vector<double> angles = brdf.IncidentAngles();
+  ASSERT_EQ(angles.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(angles[k], 0.2 + 0.3 * double(k), 2e-4);
+  EXPECT_TRUE(Measured(kGlossy, 100, 1).IncidentAngles().empty());
+}
+
+TEST(Scattered, AnIncidentAngleCanBeLeftOut) {
+  const ScatteredBrdf brdf(MeasuredAtAngles({0.2, 0.5, 0.8}));
+  const std::unique_ptr<Brdf> rest = brdf.WithoutIncidentAngle(1);
+  EXPECT_EQ(rest->IncidentAngles().size(), 2u);
+  EXPECT_EQ(rest->Measurements().size(), brdf.Measurements().size() - 12);
+  std::size_t towards = 0;
+  for (const BrdfSample& sample : rest->Measurements()) {
+    EXPECT_GT(std::abs(std::acos(sample.pair.wi.z) - 0.5), 0.1);
+    towards += std::abs(std::acos(sample.pair.wo.z) - 0.5) < 1e-9;
+  }
+  EXPECT_EQ(towards, 3u) << "the other order stays";
+}
+
 TEST(ScatteredSampling, EverySampleIsDrawnOnceFromOneOfTheSets) {
   const ScatteredBrdf brdf = Measured(kGlossy, 4000, 1);
   const std::size_t count = brdf.Measurements().size();

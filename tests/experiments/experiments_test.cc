@@ -360,6 +360,60 @@ TEST(Picture, WritesThePictureAndItsNumbers) {
   }
 }
 
+// Measured towards many directions from each of five angles.
+void WriteMeasurements(const std::string& path) {
+  std::string csv = "theta_i,phi_i,theta_o,phi_o,value\n";
+  for (double theta_i : {0.1, 0.4, 0.7, 1.0, 1.3}) {
+    for (int k = 0; k < 60; ++k) {
+      const double theta_o = 0.02 * k, phi_o = std::fmod(2.4 * k, 6.28);
+      const double value = 0.2 + std::exp(-8.0 * std::pow(theta_o - theta_i, 2)) * (k % 2);
+      csv += StrCat(theta_i, ",0,", theta_o, ",", phi_o, ",", value, "\n");
+    }
+  }
+  WriteBytes(path, csv);
+}
+
+TEST(Measured, HasATableForEachQuantity) {
+  const TemporaryFolder folder;
+  std::vector<std::string> flags = kTinyImages;
+  flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", "--epochs=0", "--adam",
+                             "--analytic", "builtin:satin-gold"});
+  const ProgramResult run = RunIn(folder, "measured", flags);
+  ASSERT_EQ(run.status, 0);
+  for (const char* text :
+       {"### Error at measured directions", "### Error at all directions",
+        "### Largest directional albedo", "### Mean Delta E 2000", "### CPU seconds",
+        "### PSNR to the material, dB", "### SSIM to the material", "### FLIP to its reciprocal",
+        "### PSNR to what our fit aims at, dB", "| floor ", "| our Adam ", "| analytic ", "| ours ",
+        "| satin-gold ", "- ours over analytic: median "}) {
+    EXPECT_THAT(run.output, HasSubstr(text));
+  }
+  EXPECT_THAT(run.output, Not(HasSubstr("left out")));  // a formula has no angles
+  EXPECT_EQ(Read(folder / "results/measured.md"), run.output);
+}
+
+TEST(Measured, LeavesOutEachInteriorAngleOfAList) {
+  const TemporaryFolder folder;
+  WriteMeasurements(folder / "list.csv");
+  std::vector<std::string> flags = kTinyImages;
+  flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", folder / "list.csv"});
+  const ProgramResult run = RunIn(folder, "measured", flags);
+  ASSERT_EQ(run.status, 0);
+  EXPECT_THAT(run.output, Not(HasSubstr("PSNR")));  // a list has no picture
+  EXPECT_THAT(run.output, HasSubstr("### Error at incident angles left out"));
+  EXPECT_THAT(run.output, testing::ContainsRegex("below 1 at [0-3] of 3 angles"));
+}
+
+TEST(Measured, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--film_width=5", "--scene=absent.json", "--epochs=-1", "absent.bsdf"}) {
+    std::vector<std::string> flags = kTinyImages;
+    flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", flag});
+    EXPECT_EQ(RunIn(folder, "measured", flags).status, 1) << flag;
+  }
+  EXPECT_EQ(RunIn(folder, "measured", {"--scene=" PBNBRDF_SCENES "/sphere.json"}).status, 1);
+}
+
 #endif  // PBNBRDF_HAS_RENDER
 
 constexpr char kStabilityHeader[] =
@@ -414,6 +468,7 @@ TEST(Experiments, HelpNamesTheFlags) {
   const std::map<std::string, std::string> flag_of = {{"ablation", "--chromaticity_weights"},
                                                       {"models", "--lobes"},
 #ifdef PBNBRDF_HAS_RENDER
+                                                      {"measured", "--left_out"},
                                                       {"picture", "--epochs"},
                                                       {"scene_fit", "--scenes"},
 #endif

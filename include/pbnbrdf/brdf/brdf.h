@@ -59,6 +59,13 @@ class Brdf {
   // well everywhere.
   virtual std::optional<DirectionPair> NearestMeasured(const DirectionPair&) const { return {}; }
 
+  // The incident angles theta_i (radians, ascending) each of which f was measured at, towards many
+  // directions. None of formulas, of networks, and of tables over the half vector.
+  virtual std::vector<double> IncidentAngles() const { return {}; }
+
+  // As if nothing had been measured at IncidentAngles()[index], neither the first nor the last one.
+  virtual std::unique_ptr<Brdf> WithoutIncidentAngle(std::size_t) const { return nullptr; }
+
   // Whether f was measured at directions that have nothing to do with the rows of a MERL table.
   virtual bool HasOwnDirections() const { return false; }
 

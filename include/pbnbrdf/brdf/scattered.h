@@ -55,6 +55,13 @@ class ScatteredBrdf final : public Brdf {
   // 1 at a measurement, 1/2 at a quarter of kReach from the nearest one.
   double Certainty(const DirectionPair& pair) const override;
 
+  // Those that at least kLeastAtAngle measurements have in common, within 0.001.
+  std::vector<double> IncidentAngles() const override;
+  static constexpr std::size_t kLeastAtAngle = 10;
+
+  // Measurements towards that angle stay: by reciprocity they say something of it.
+  std::unique_ptr<Brdf> WithoutIncidentAngle(std::size_t index) const override;
+
   bool IsIsotropic() const override { return data_.isotropic; }
   bool HasOwnDirections() const override { return true; }
   bool IsReciprocal() const override { return true; }

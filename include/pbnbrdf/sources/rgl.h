@@ -51,12 +51,9 @@ class RglBrdf final : public Brdf {
   double Certainty(const DirectionPair& pair) const override;
   std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override;
 
-  // The measured theta_i, radians, ascending. A node at 90 degrees isn't one: nothing can be measured
-  // there.
-  std::vector<double> IncidentAngles() const;
-
-  // As if theta_i = IncidentAngles()[index], neither the first nor the last one, had not been measured.
-  RglBrdf WithoutIncidentAngle(std::size_t index) const;
+  // A node at 90 degrees isn't one: nothing can be measured there.
+  std::vector<double> IncidentAngles() const override;
+  std::unique_ptr<Brdf> WithoutIncidentAngle(std::size_t index) const override;
 
   bool HasOwnDirections() const override { return true; }
   bool IsIsotropic() const override;
