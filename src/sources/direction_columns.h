@@ -1,6 +1,6 @@
 // direction_columns.h: the columns of a table that say where light comes from and where it goes:
-// theta_i, phi_i, theta_o, phi_o in radians, or theta_i_deg, ... in degrees, each by itself; or wi_x, wi_y,
-// wi_z, wo_x, wo_y, wo_z, of any length but 0. A negative theta is on the other side of the normal: phi + pi.
+// theta_i, phi_i, theta_o, phi_o in radians, or theta_i_deg, ... in degrees; or wi_x, wi_y, wi_z, wo_x, wo_y,
+// wo_z, of any length but 0. A negative theta is on the other side of the normal: phi + pi.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,8 @@ inline constexpr char kDirectionColumns[] =
 class DirectionColumns {
  public:
   // Names the table's columns by its line. None, and the names forgotten, if directions aren't among them.
-  // Angles come first where both are there. Throws Error if two columns have one of the names.
+  // Throws Error if there is more than one reading: two columns with one of the names, radians and degrees,
+  // angles and vectors.
   static std::optional<DirectionColumns> Find(TextTable* table);
 
   // Whether one of them is missing in the table's line.
@@ -28,15 +29,11 @@ class DirectionColumns {
   DirectionPair Parse(const TextTable& table) const;
 
  private:
-  struct Column {
-    std::size_t at;
-    double scale;  // what a number there is multiplied by
-  };
-
   DirectionPair FromAngles(const TextTable& table) const;
   DirectionPair FromVectors(const TextTable& table) const;
 
-  std::vector<Column> angles_, vectors_;  // four or none; six or none
+  std::vector<std::size_t> angles_, vectors_;  // four or none; six or none
+  double scale_;                               // what an angle is multiplied by
 };
 
 }  // namespace pbnbrdf

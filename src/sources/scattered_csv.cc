@@ -22,15 +22,15 @@ struct Columns {
   std::vector<std::size_t> sigmas;  // the same, or none
 };
 
-// Of all the names, else of the single one, else none.
+// Of all the names, else of the single one, else none. Throws Error if both are there.
 std::vector<std::size_t> FindAll(const TextTable& table, Names all, const char* single) {
   std::vector<std::size_t> columns;
   for (const char* name : all) {
     if (const auto at = table.FindColumn(name)) columns.push_back(*at);
   }
-  if (columns.size() == all.size()) return columns;
-  columns.clear();
-  if (const auto at = table.FindColumn(single)) columns.push_back(*at);
+  const auto at = table.FindColumn(single);
+  if (columns.size() != all.size()) return at ? std::vector{*at} : std::vector<std::size_t>();
+  if (at) Fail(table.path(), ": columns ", single, " and ", *all.begin(), ", ...; leave out one");
   return columns;
 }
 

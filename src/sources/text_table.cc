@@ -12,16 +12,19 @@ namespace {
 constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::string_view kBlanks = " \t";
-constexpr std::string_view kMissing[] = {"", "nan", "-nan", "na", "n/a"};
-constexpr std::size_t kMaxMissing = 4;  // letters
+constexpr std::string_view kMissing[] = {"",     "nan",  "-nan", "na", "n/a",
+                                         "#n/a", "null", "none", "-",  "--"};
+constexpr std::size_t kMaxMissing = 4;   // letters
+constexpr std::size_t kUtf16Bytes = 16;  // that tell UTF-16 without its mark
 
-// Where the first cell of `line` ends; a separator between quotes ends none.
+// Where the first cell of `line` ends; a separator between quotes ends none. Quotes that are part of a cell are
+// written twice.
 std::size_t CellEnd(std::string_view line, std::string_view separators) {
-  std::size_t from = 0;
-  const std::size_t begin = line.find_first_not_of(kBlanks);
-  if (begin != line.npos && line[begin] == '"') {
-    const std::size_t end = line.find('"', begin + 1);
-    if (end != line.npos) from = end + 1;
+  std::size_t from = 0, quote = line.find_first_not_of(kBlanks);
+  while (quote < line.size() && line[quote] == '"') {
+    const std::size_t end = line.find('"', quote + 1);
+    if (end == line.npos) break;
+    from = quote = end + 1;
   }
   return std::min(line.find_first_of(separators, from), line.size());
 }
@@ -68,6 +71,7 @@ TextTable::TextTable(std::string path, std::string text, Cells cells)
     : path_(std::move(path)), text_(std::move(text)), cells_(cells) {
   if (LooksLikeUtf16(text_)) Fail(path_, ": UTF-16 text; save it as UTF-8");
   if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  if (text_.find('\n') == text_.npos) line_end_ = '\r';
   if (cells_ == Cells::kBlanks) separator_ = ' ';
 }
 
@@ -78,7 +82,7 @@ TextTable TextTable::Read(const std::string& path, Cells cells) {
 bool TextTable::Next() {
   while (at_ < text_.size()) {
     ++number_;
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    const std::size_t end = std::min(text_.find(line_end_, at_), text_.size());
     const std::string_view line = std::string_view(text_).substr(at_, end - at_);
     at_ = end + 1;
     line_ = Trim(line);
@@ -113,7 +117,8 @@ std::optional<std::size_t> TextTable::FindColumn(std::string_view name) const {
 
 void TextTable::RequireCells(std::size_t count, std::string_view what) const {
   if (cells_of_line_.size() == count) return;
-  Fail(Place(), ": ", cells_of_line_.size(), " ", what, ", expected ", count);
+  Fail(Place(), ": ", cells_of_line_.size(), " ", what, ", expected ", count,
+       separator_ == ',' && cells_of_line_.size() > count ? "; is there a decimal comma?" : "");
 }
 
 bool TextTable::IsMissing(std::size_t column) const {
@@ -130,11 +135,26 @@ double TextTable::Number(std::size_t column) const {
   if (comma != cell.npos && comma + 1 < cell.size()) {
     Fail(place, ": '", cell, "' has a decimal comma; write a point");
   }
-  return ParseNumber(place, cell);
+  const std::size_t exponent = cell.find_first_not_of("+-.0123456789");
+  if (exponent == cell.npos || exponent == 0 || (cell[exponent] != 'd' && cell[exponent] != 'D')) {
+    return ParseNumber(place, cell);
+  }
+  std::string with_e(cell);
+  with_e[exponent] = 'e';
+  return ParseNumber(place, with_e);
 }
 
 bool LooksLikeUtf16(std::string_view start) {
-  return start.starts_with("\xff\xfe") || start.starts_with("\xfe\xff");
+  if (start.starts_with("\xff\xfe") || start.starts_with("\xfe\xff")) return true;
+  // Each character of ASCII has a zero byte before or behind it.
+  start = start.substr(0, kUtf16Bytes);
+  const auto zeros = [&](std::size_t from) {
+    for (std::size_t n = 0; n < start.size(); ++n) {
+      if ((start[n] == '\0') != (n % 2 == from)) return false;
+    }
+    return true;
+  };
+  return start.size() == kUtf16Bytes && (zeros(0) || zeros(1));
 }
 
 }  // namespace pbnbrdf

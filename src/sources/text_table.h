@@ -1,6 +1,6 @@
 // text_table.h: tables in text files: lines of cells, comments, a line that names the columns. Every format of
 // text is read through it, so that all errors name file, line and column alike, and all take the same dialects:
-// a byte order mark, any line ends, none at the end of the file, quotes around cells.
+// a byte order mark, line ends of any system, none at the end of the file, quotes around cells, Fortran's exponents.
 #pragma once
 
 #include <optional>
@@ -47,11 +47,11 @@ class TextTable {
   // Throws Error "FILE: line 12: 3 columns, expected 4".
   void RequireCells(std::size_t count, std::string_view what = "columns") const;
 
-  // Whether a cell of this line says that there is no number: empty, nan or NA.
+  // Whether a cell of this line says that there is no number: empty, nan, NA, null, -, ...
   bool IsMissing(std::size_t column) const;
 
   // A cell of this line. Throws Error "FILE: line 12, NAME: 'x' is not a finite number"; of a column
-  // without a name "FILE: line 12, number 3: ...".
+  // without a name "FILE: line 12, number 3: ...". Fortran's 1.5D-3 is one, too.
   double Number(std::size_t column) const;
 
   const std::string& path() const { return path_; }
@@ -59,7 +59,7 @@ class TextTable {
  private:
   std::string path_, text_;
   Cells cells_;
-  char separator_ = ',';
+  char separator_ = ',', line_end_ = '\n';
   std::size_t at_ = 0;
   int number_ = 0;  // of the line
   std::string_view line_;
@@ -67,7 +67,7 @@ class TextTable {
   std::vector<std::string> names_;
 };
 
-// Whether a text begins as UTF-16 does.
+// Whether a text begins as UTF-16 does, with its byte order mark or without.
 bool LooksLikeUtf16(std::string_view start);
 
 }  // namespace pbnbrdf

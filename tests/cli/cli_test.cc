@@ -410,8 +410,8 @@ TEST_F(Cli, EvalTakesTheDialectsOfText) {
     WriteBytes(Path("pairs.csv"), csv);
     return Run("eval --material=builtin:spectralon --out=- --directions=" + Path("pairs.csv"));
   };
-  EXPECT_EQ(values("\xef\xbb\xbfTheta_I_deg;phi_i;theta_o;phi_o\r\n# why\r\n30;0;-0.5;1").out,
-            StrCat("Theta_I_deg;phi_i;theta_o;phi_o;r;g;b\n30;0;-0.5;1;", f, ";", f, ";", f, "\n"));
+  EXPECT_EQ(values("\xef\xbb\xbfTheta_I;phi_i;theta_o;phi_o\r\n# why\r\n0.3;0;-0.5;1").out,
+            StrCat("Theta_I;phi_i;theta_o;phi_o;r;g;b\n0.3;0;-0.5;1;", f, ";", f, ";", f, "\n"));
   EXPECT_EQ(values("# theta_i phi_i theta_o phi_o\n0 0 0.5 1\n").out,
             StrCat("# theta_i phi_i theta_o phi_o r g b\n0 0 0.5 1 ", f, " ", f, " ", f, "\n"));
   const Result tabs =
@@ -469,6 +469,7 @@ TEST_F(Cli, BadDirectionsAreNamed) {
   values("theta_i,phi_i,theta_o,phi_o,R,g,b\n0,0,0,0,1,1,1\n",
          "line 1: there is a column r already; r,g,b are what is appended");
   values("theta_i,phi_i,theta_o,phi_o,phi_o\n", "two columns have the name phi_o");
+  values("theta_i_deg,phi_i,theta_o,phi_o\n", "phi_i in radians and theta_i_deg in degrees");
   values("theta_i;phi_i;theta_o;phi_o\n0,1;0;0;0\n", "theta_i: '0,1' has a decimal comma");
   values(std::string("\xff\xfet\0", 4), "pairs.csv: UTF-16 text");
 }

@@ -127,10 +127,10 @@ TEST_F(ScatteredFiles, CsvColumnsAreFoundByName) {
   ExpectNear(radians[0].pair.wo, FromSpherical(0.4, 1));
   EXPECT_EQ(radians[1].value, (Rgb{6, 6, 6}));
   const auto degrees = Samples("a.csv",
-                               "theta_i_deg,phi_i_deg,theta_o_deg,phi_o,r,g,b\n"
-                               "30,180,60,1,1,2,3\n30,180,60,2,4,5,6\n");
+                               "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,r,g,b\n"
+                               "30,180,60,90,1,2,3\n30,180,60,45,4,5,6\n");
   ExpectNear(degrees[0].pair.wi, FromSpherical(kPi / 6, kPi));
-  ExpectNear(degrees[0].pair.wo, FromSpherical(kPi / 3, 1));
+  ExpectNear(degrees[0].pair.wo, FromSpherical(kPi / 3, kPi / 2));
   EXPECT_EQ(degrees[1].value, (Rgb{4, 5, 6}));
   const auto vectors = Samples("a.csv",
                                "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value\n"
@@ -232,12 +232,16 @@ TEST_F(ScatteredFiles, DialectsOfTextAreOneTable) {
   const std::string names = "\"theta_i\", 'Phi_I' ,THETA_o,\tphi_o ,\"Value\"\n";
   const std::string rows = text.substr(text.find('\n') + 1);
   for (const std::string& dialect :
-       {with('\n', "", "\r\n"), with(',', "", ";"), with(',', "", "\t"), with(',', "", "  "),
-        with(',', "", "\t \t"), with(',', "", ", "), with('x', "\xef\xbb\xbf", ""),
-        text.substr(0, text.size() - 1), names + rows,
+       {with('\n', "", "\r\n"), with('\n', "", "\r"), with(',', "", ";"), with(',', "", "\t"),
+        with(',', "", "  "), with(',', "", "\t \t"), with(',', "", ", "),
+        with('x', "\xef\xbb\xbf", ""), text.substr(0, text.size() - 1), names + rows,
         "# theta_i,phi_i,theta_o,phi_o,value\n" + rows,
         "# a, b\n\n" + with('\n', "", "\n# theta_i, again\n"),
-        text + "nan,0,0.3,1,5\n0.3,0,0.3,1,\n0.3,NA,0.3,1,1\n"}) {
+        text +
+            "nan,0,0.3,1,5\n0.3,0,0.3,1,\n0.3,NA,0.3,1,1\n0,0,0,1,-\n0,0,0,1,NULL\n0,none,0,1,1\n",
+        std::string("note,theta_i,phi_i,theta_o,phi_o,value\n\"of 5, 6\",0.3,0,0.4,2,5\n"
+                    " \"\"\"a, b\"\" or c\" ,0.2,0,0.1,1,-0.5\n"),
+        names + "3D-1,0d0,\"4.0D-01\",2,+.5D1\n0.2,0,1d-1,1.,-5.E-1"}) {
     for (const char* name : {"a.csv", "a.CSV", "a.txt", "a"}) {
       const auto found = Samples(name, dialect);
       ASSERT_EQ(found.size(), wanted.size()) << dialect;
@@ -262,17 +266,47 @@ TEST_F(ScatteredFiles, WhatMakesATextUnreadableIsNamed) {
   EXPECT_THAT(ErrorOfOpening("a.csv", std::string("\xff\xfet\0h\0", 6)),
               HasSubstr("a.csv: UTF-16 text; save it as UTF-8"));
   EXPECT_THAT(ErrorOfOpening("a.txt", std::string("\xfe\xff\0t\0h", 6)), HasSubstr("UTF-16 text"));
+  for (const bool big_endian : {false, true}) {  // without a byte order mark
+    std::string utf16;
+    for (char c : header) utf16 += big_endian ? std::string{'\0', c} : std::string{c, '\0'};
+    EXPECT_THAT(ErrorOfOpening("a.txt", utf16), HasSubstr("UTF-16 text"));
+  }
+  EXPECT_THAT(ErrorOfOpening("a.csv", "theta_i,phi_i,theta_o,phi_o,value\n0,1,0,0,4,0,5\n"),
+              HasSubstr("line 2: 7 columns, expected 5; is there a decimal comma?"));
+  EXPECT_THAT(ErrorOfOpening("a.csv", "theta_i,phi_i,theta_o,phi_o,value\n0,0,0,0,1e5d2\n"),
+              HasSubstr("value: '1e5d2' is not a finite number"));
   EXPECT_THAT(ErrorOfOpening("a.csv", "theta_i,phi_i,theta_o,phi_o,value,Value\n0,0,0,0,1,1\n"),
               HasSubstr("a.csv: two columns have the name value"));
   EXPECT_THAT(ErrorOfOpening("a.csv", "theta_i,phi_i,theta_o,phi_o,value,sigma\n0,0,0,0,1,-1\n"),
               HasSubstr("line 2, sigma: -1; must be >= 0"));
 }
 
+TEST_F(ScatteredFiles, TwoReadingsOfOneQuantityAreRefused) {
+  const auto error = [&](const std::string& names) {
+    std::string row = "0.5";
+    for (char c : names) row += c == ',' ? ",0.5" : "";
+    return ErrorOfOpening("a.csv", names + "\n" + row + "\n");
+  };
+  EXPECT_EQ(error("theta_i,phi_i,theta_o,phi_o,value"), "");
+  EXPECT_THAT(error("theta_i,theta_i_deg,phi_i,theta_o,phi_o,value"),
+              HasSubstr("a.csv: columns theta_i in radians and theta_i_deg in degrees; write all"));
+  EXPECT_THAT(error("theta_i_deg,phi_i,theta_o_deg,Phi_O,value"),
+              HasSubstr("columns phi_i in radians and theta_i_deg in degrees"));
+  EXPECT_THAT(error("theta_i,phi_i,theta_o,phi_o,r,value,g,b"),
+              HasSubstr("a.csv: columns value and r, ...; leave out one"));
+  EXPECT_THAT(error("theta_i,phi_i,theta_o,phi_o,value,sigma,sigma_r,sigma_g,sigma_b"),
+              HasSubstr("columns sigma and sigma_r"));
+  EXPECT_THAT(error("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,theta_i,value"),
+              HasSubstr("directions as angles and as vectors"));
+  EXPECT_THAT(error("theta_i,Theta_I,phi_i,theta_o,phi_o,value"),
+              HasSubstr("two columns have the name theta_i"));
+}
+
 TEST_F(ScatteredFiles, ANegativeThetaIsOnTheOtherSide) {
   const auto samples =
-      Samples("a.csv", "theta_i,phi_i,theta_o_deg,phi_o,value\n-0.3,1,-30,2,5\n0.3,1,30,2,5\n");
+      Samples("a.csv", "theta_i,phi_i,theta_o,phi_o,value\n-0.3,1,-0.5,2,5\n0.3,1,0.5,2,5\n");
   ExpectNear(samples[0].pair.wi, FromSpherical(0.3, 1 + kPi));
-  ExpectNear(samples[0].pair.wo, FromSpherical(kPi / 6, 2 + kPi));
+  ExpectNear(samples[0].pair.wo, FromSpherical(0.5, 2 + kPi));
 }
 
 TEST_F(ScatteredFiles, ASampleThatWasTurnedByHalfACircleIsOneMaterial) {

@@ -17,12 +17,13 @@
 // follows a row of numbers for each measurement.
 //
 // The first line of a CSV names its columns, in letters of either case: theta_i, phi_i, theta_o, phi_o in
-// radians, or theta_i_deg, ... in degrees, each by itself, where a negative theta is on the other side of the
-// normal; or wi_x, wi_y, wi_z, wo_x, wo_y, wo_z, of any length but 0; and value, or r, g, b: f in 1/sr, without
-// the cosine. sigma, or sigma_r, sigma_g, sigma_b, is the standard deviation of f and gives the measurements
-// their weights (src/sources/sample_weights.h). Other columns are ignored, and so are empty lines and those that
-// begin with #, but for one that names the columns. Columns are parted by ';', ',', a tab or blanks. Rows where a
-// number is missing (an empty cell, nan, NA) are left out and counted.
+// radians, or theta_i_deg, ... in degrees, where a negative theta is on the other side of the normal; or wi_x,
+// wi_y, wi_z, wo_x, wo_y, wo_z, of any length but 0; and value, or r, g, b: f in 1/sr, without the cosine. Two
+// readings of one quantity, such as theta_i and theta_i_deg or value and r, are refused. sigma, or sigma_r,
+// sigma_g, sigma_b, is the standard deviation of f and gives the measurements their weights
+// (src/sources/sample_weights.h). Other columns are ignored, and so are empty lines and those that begin with
+// #, but for one that names the columns. Columns are parted by ';', ',', a tab or blanks. Rows where a number
+// is missing (an empty cell, nan, NA, null, none, -) are left out and counted.
 //
 // An isotropic material needs one phi_i only: where all measurements have the same, or the opposite one (and
 // with the coordinates of ALTA that have no phi_h), the material is taken as isotropic, else as anisotropic. A
