@@ -1,4 +1,5 @@
 // pbnbrdf info
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -11,6 +12,7 @@
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "report.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -77,6 +79,16 @@ void PrintReciprocity(const Brdf& material) {
             << ", half the mean |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)|\n";
 }
 
+// Of a material that isn't known everywhere.
+void PrintCoverage(const Brdf& material) {
+  const Coverage coverage = MeasureCoverage(material);
+  if (coverage.known == 1.0) return;
+  const bool is_list = !material.Measurements().empty();
+  std::cout << "  " << (is_list ? "measured near " : "known at ")
+            << std::lround(100.0 * coverage.known) << " % of all pairs of directions\n";
+  if (coverage.in_plane) std::cout << "  " << kInPlaneNote << "\n";
+}
+
 int RunInfo(const Arguments& arguments) {
   const std::string& source = arguments[0];
   if (source == "builtin:") {
@@ -89,6 +101,7 @@ int RunInfo(const Arguments& arguments) {
   }
   const std::unique_ptr<Brdf> brdf = OpenBrdf(source);
   std::cout << source << ": " << brdf->Description() << "\n";
+  PrintCoverage(*brdf);
   if (!brdf->IsReciprocal()) PrintReciprocity(*brdf);
   if (const auto* network = dynamic_cast<const NeuralBrdf*>(brdf.get())) {
     PrintMetadata(network->metadata());

@@ -87,9 +87,12 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
     of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
   }
   const auto at_measured = MovedToMeasured(material, heldout);
+  const Coverage coverage = MeasureCoverage(material);
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
           {"error_at_measured", MeasureErrors(at_measured, fit).mean_abs_log_error},
           {"reciprocal_floor", ReciprocalFloor(heldout, material)},
+          {"measured_part", coverage.known},
+          {"measured_in_plane", coverage.in_plane},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
           {"hcl", reciprocity.hcl},
@@ -117,6 +120,8 @@ std::string MeasuresText(const Json& measures) {
        "the same at measured directions, where others are interpolated between them"},
       {"reciprocal_floor",
        "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
+      {"measured_part", "of all pairs of directions: where the material is known, or nearly"},
+      {"measured_in_plane", "whether only one plane through the normal was measured"},
       {"rmse", "root mean square error of f cos, 1/sr"},
       {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
       {"hcl", "Helmholtz continuity loss (eq. 9)"},
@@ -147,6 +152,7 @@ std::string MeasuresText(const Json& measures) {
     }
     text << meaning << "\n";
   }
+  if (measures.at("measured_in_plane").get<bool>()) text << kInPlaneNote << "\n";
   return text.str();
 }
 

@@ -23,6 +23,10 @@ struct MeasureOptions {
 Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                 const MeasureOptions& options = {});
 
+// Of materials that are measured_in_plane.
+inline constexpr char kInPlaneNote[] =
+    "only a plane was measured: what lies beside it is a guess, by a model fitted to the plane";
+
 // A line for each key, with its unit and meaning.
 std::string MeasuresText(const Json& measures);
 

@@ -1,4 +1,6 @@
 // Every kind of material through the commands.
+#include <cmath>
+
 #include "cli/cli_fixture.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "sources/npy_writer.h"
@@ -25,6 +27,43 @@ TEST_F(CliSources, BadMaterialsExitWith1) {
   ExpectError("measure --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1,
               "no such file");
   ExpectError("info " + Path("none.binary"), 1, "no such file");
+}
+
+// A scan from each of four angles, in the plane of incidence; with `tilt`, also out of it.
+std::string Scan(bool tilt) {
+  std::string csv = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n";
+  for (int theta_i : {10, 30, 50, 70}) {
+    for (int k = 0; k < 16; ++k) {
+      csv += StrCat(theta_i, ",0,", 5 * k, ",180,0.1\n");
+      if (tilt) csv += StrCat(theta_i, ",0,", 5 * k, ",", 10 * k, ",0.1\n");
+    }
+  }
+  return csv;
+}
+
+TEST_F(CliSources, WhatWasMeasuredOfTheHemisphereIsSaid) {
+  WriteBytes(Path("plane.csv"), Scan(false));
+  WriteBytes(Path("all.csv"), Scan(true));
+  const std::string note = "only a plane was measured: what lies beside it is a guess";
+  std::vector<double> parts;
+  for (const bool in_plane : {true, false}) {
+    const std::string file = Path(in_plane ? "plane.csv" : "all.csv");
+    const Result fit = Run("fit --material=" + file + kQuick + "--summary=" + Path("s.json") +
+                           " --out=" + Path("a.safetensors"));
+    ASSERT_EQ(fit.status, 0) << fit.err;
+    EXPECT_EQ(fit.out.find(note) != std::string::npos, in_plane) << fit.out;
+    const json summary = json::parse(ReadFile(Path("s.json"), 1 << 20));
+    EXPECT_EQ(summary["measured_in_plane"], in_plane);
+    parts.push_back(summary["measured_part"]);
+    const std::string info = Run("info " + file).out;
+    EXPECT_EQ(info.find(note) != std::string::npos, in_plane) << info;
+    EXPECT_THAT(info, HasSubstr(StrCat("  measured near ", std::lround(100.0 * parts.back()),
+                                       " % of all pairs of directions\n")));
+  }
+  EXPECT_GT(parts[0], 0.05);
+  EXPECT_LT(parts[0], parts[1]);
+  EXPECT_LT(parts[1], 1.0);
+  EXPECT_THAT(Run("info builtin:satin-gold").out, Not(HasSubstr("pairs of directions")));
 }
 
 TEST_F(CliSources, AModelFitIsASourceAndAFit) {
