@@ -93,18 +93,20 @@ class RefinedAlbedo {
     }
   }
 
-  // By the first quadrature, which also tells whether single precision is good enough here.
+  // By the first quadrature; in single precision where a small one has it agree with double there.
   Estimate At(const Vec3& wi) const {
-    Estimate estimate = {.albedo = DirectionalAlbedo(brdf_, wi, coarse_), .error = {}};
+    Estimate estimate = {.albedo = {}, .error = {}};
+    if (single_) {
+      const Rgb single = DirectionalAlbedo(*single_, wi, check_);
+      const Rgb exact = DirectionalAlbedo(brdf_, wi, check_);
+      estimate.is_exact = !(Largest(Difference(single, exact)) <= kRounding);
+    }
+    const Brdf& brdf = estimate.is_exact ? brdf_ : *single_;
+    estimate.albedo = DirectionalAlbedo(brdf, wi, coarse_);
     // Another grid meets ripples at other places.
-    estimate.error =
-        Difference(DirectionalAlbedo(single_ ? *single_ : brdf_, wi, other_), estimate.albedo);
+    estimate.error = Difference(DirectionalAlbedo(brdf, wi, other_), estimate.albedo);
     for (int c = 0; c < 3; ++c) {
       estimate.error[c] = std::max(estimate.error[c], kCoarseError * estimate.albedo[c]);
-    }
-    if (single_) {
-      const Rgb single = DirectionalAlbedo(*single_, wi, coarse_);
-      estimate.is_exact = !(Largest(Difference(single, estimate.albedo)) <= kRounding);
     }
     return estimate;
   }
@@ -160,7 +162,8 @@ class RefinedAlbedo {
   const Brdf& brdf_;
   const std::unique_ptr<const Brdf> single_;  // or null
   const AlbedoGrid& grid_;
-  AlbedoQuadrature coarse_ = AlbedoQuadrature(64, 32), other_ = AlbedoQuadrature(45, 32);
+  AlbedoQuadrature coarse_ = AlbedoQuadrature(64, 32), other_ = AlbedoQuadrature(45, 32),
+                   check_ = AlbedoQuadrature(24, 16);
   std::vector<AlbedoQuadrature> levels_;
 };
 
