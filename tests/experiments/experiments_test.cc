@@ -298,6 +298,32 @@ TEST(Models, RejectsWhatItCantDo) {
   }
 }
 
+TEST(Noise, HasARowForEachFormAndNoise) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> flags = {"--additive=0.01",     "--multiplicative=0.1",
+                                          "--measurements=2000", "--samples=500",
+                                          "--max_seconds=1",     "lambert:rho_d=0.3"};
+  const ProgramResult run = RunIn(folder, "noise", flags);
+  ASSERT_EQ(run.status, 0);
+  for (const char* form : {"table", "list "}) {
+    for (const char* noise : {"none ", "additive 0.01 ", "multiplicative 0.1 "}) {
+      EXPECT_THAT(run.output, HasSubstr(StrCat("| lambert:rho_d=0 | ", form))) << form;
+      EXPECT_THAT(run.output, HasSubstr(StrCat("| ", noise))) << noise;
+    }
+  }
+  EXPECT_THAT(run.output, testing::ContainsRegex("in [0-4] of 4 rows with noise"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results/noise.binary"));
+  EXPECT_EQ(Read(folder / "results/noise.md"), run.output);
+}
+
+TEST(Noise, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  for (const char* flag : {"--additive=-1", "--multiplicative=x", "--forms=other",
+                           "--measurements=0", "--samples=1", "absent.binary"}) {
+    EXPECT_EQ(RunIn(folder, "noise", {flag, "builtin:blue-plastic"}).status, 1) << flag;
+  }
+}
+
 #ifdef PBNBRDF_HAS_RENDER
 const std::vector<std::string> kTinyImages = {"--film_width=16", "--samples_per_pixel=2",
                                               "--max_seconds=0.1", "--threads=1"};
@@ -467,6 +493,7 @@ TEST(Experiments, HelpNamesTheFlags) {
   const TemporaryFolder folder;
   const std::map<std::string, std::string> flag_of = {{"ablation", "--chromaticity_weights"},
                                                       {"models", "--lobes"},
+                                                      {"noise", "--additive"},
 #ifdef PBNBRDF_HAS_RENDER
                                                       {"measured", "--left_out"},
                                                       {"picture", "--epochs"},
