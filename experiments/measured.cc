@@ -2,13 +2,13 @@
 // pictures.
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
 
+#include "cpu_timer.h"
 #include "curves.h"
 #include "experiment.h"
 #include "materials.h"
@@ -143,9 +143,9 @@ class Methods {
  private:
   template <typename Function>
   static Candidate Timed(const char* method, Function fit) {
-    const std::clock_t start = std::clock();
+    const CpuTimer timer;
     auto brdf = fit();
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double seconds = timer.Seconds();
     return {method, [brdf] { return std::make_unique<decltype(brdf)>(brdf); }, seconds};
   }
 

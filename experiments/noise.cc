@@ -2,9 +2,9 @@
 // formulas themselves.
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 #include "base/text.h"
+#include "cpu_timer.h"
 #include "experiment.h"
 #include "materials.h"
 #include "noisy.h"
@@ -80,9 +80,8 @@ std::string NameOf(const Noise& noise) {
 
 class Study {
  public:
-  Study(const Options& options, const Output& output)
+  explicit Study(const Options& options)
       : options_(options),
-        path_(output.Path("noise.binary")),
         table_({"material", "measured as", "noise", "error of the fit", "of the noisy data",
                 "fit over data", "bias of the dark half, %", "CPU s"}) {}
 
@@ -107,7 +106,7 @@ class Study {
   std::unique_ptr<Brdf> Measured(const Brdf& clean, const std::string& form,
                                  const Noise& noise) const {
     if (form == "table") {
-      return std::make_unique<MerlBrdf>(NoisyTable(clean, noise, options_.seed, path_));
+      return std::make_unique<MerlBrdf>(NoisyTable(clean, noise, options_.seed));
     }
     if (form != "list") Fail("forms = ", form, "; must be table or list");
     return std::make_unique<ScatteredBrdf>(
@@ -121,9 +120,9 @@ class Study {
     FitOptions fit_options;
     fit_options.schedule.max_seconds = options_.max_seconds;
     fit_options.threads = options_.threads;
-    const std::clock_t start = std::clock();
+    const CpuTimer timer;
     const NeuralBrdf fit = FitBrdf(measured, problem, fit_options).network;
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double seconds = timer.Seconds();
     const double ours = MeasureErrors(truth, fit).mean_abs_log_error;
     const double data = MeasureErrors(truth, measured).mean_abs_log_error;
     const double bias = 100.0 * DarkHalfBias(truth, fit);
@@ -137,14 +136,13 @@ class Study {
   }
 
   const Options& options_;
-  std::string path_;
   Table table_;
   int noisy_ = 0, worse_ = 0;  // rows
 };
 
 void Run(const Options& options, const Arguments& arguments, const Output& output) {
   NoisesOf(options);  // a mistake shows before the first fit
-  Study study(options, output);
+  Study study(options);
   for (const MaterialSource& source :
        ParseMaterials(arguments, {"builtin:satin-gold"}, options.sgd)) {
     study.Add(source);

@@ -11,8 +11,11 @@ only() {
   others=$(ls src)
   for module in "$@"; do others=$(echo "$others" | grep -vx "$module"); done
   folders=$(for module in $others; do echo "src/$module include/pbnbrdf/$module"; done)
+  # Not grep's status: some of the folders don't exist, for which it reports an error whatever it finds.
   # shellcheck disable=SC2086
-  if grep -rnE "#include [<\"]($pattern)" $folders 2> /dev/null; then
+  lines=$(grep -rnsE "#include [<\"]($pattern)" $folders)
+  if [ -n "$lines" ]; then
+    echo "$lines"
     echo "the lines above include what only $* may"
     status=1
   fi

@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "base/uniform.h"
 #include "brdf/point_tree.h"
 #include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
@@ -17,19 +18,11 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::uint64_t kSeed = 1;
-constexpr double kSameAngle = 1e-3;  // radians, as ScatteredBrdf's
 constexpr double kSamePlace = 1e-3;  // in the coordinates of scattered.h
-
-// With both signs of phi_d at one place if isotropic.
-PointTree::Point PlaceOf(const DirectionPair& pair, bool isotropic) {
-  PointTree::Point place = ScatteredPlace(pair, isotropic);
-  if (isotropic) place[3] = std::abs(place[3]);
-  return place;
-}
 
 PointTree TreeOf(std::span<const BrdfSample> samples, bool isotropic) {
   std::vector<PointTree::Point> places;
-  for (const BrdfSample& sample : samples) places.push_back(PlaceOf(sample.pair, isotropic));
+  for (const BrdfSample& sample : samples) places.push_back(MirroredPlace(sample.pair, isotropic));
   return PointTree(std::move(places));
 }
 
@@ -48,7 +41,7 @@ class NearestMeasurement final : public PointwiseBrdf {
 
  protected:
   Rgb Value(const DirectionPair& pair) const override {
-    return samples_[tree_.Nearest(PlaceOf(pair, isotropic_), 1).front().index].value;
+    return samples_[tree_.Nearest(MirroredPlace(pair, isotropic_), 1).front().index].value;
   }
 
  private:
@@ -86,7 +79,7 @@ double RepetitionFloor(std::span<const BrdfSample> samples, bool isotropic) {
   double sum = 0.0;
   std::size_t count = 0;
   for (const BrdfSample& sample : samples) {
-    const auto near = tree.Nearest(PlaceOf(sample.pair, isotropic), 2);
+    const auto near = tree.Nearest(MirroredPlace(sample.pair, isotropic), 2);
     if (near.size() < 2 || near.back().squared_distance > kSamePlace * kSamePlace) continue;
     const double cos_i = sample.pair.wi.z;
     const auto log = [&](std::size_t k, int c) {
@@ -104,18 +97,16 @@ std::vector<BrdfSample> SamplesAtAngle(const Brdf& material, double theta_i, std
   std::vector<BrdfSample> measured = material.Measurements();
   if (!measured.empty()) {
     std::erase_if(measured, [&](const BrdfSample& sample) {
-      const Vec3& wi = sample.pair.wi;
-      return std::abs(std::atan2(std::hypot(wi.x, wi.y), wi.z) - theta_i) > kSameAngle;
+      return std::abs(Theta(sample.pair.wi) - theta_i) > ScatteredBrdf::kSameIncidence;
     });
     return measured;
   }
   std::mt19937_64 random(kSeed);
-  const auto uniform = [&] { return (static_cast<double>(random() >> 32) + 0.5) * 0x1p-32; };
   const Vec3 wi = FromSpherical(theta_i, 0.0);
   std::vector<DirectionPair> pairs;
   while (pairs.size() < count) {
-    const double theta_h = 0.5 * std::numbers::pi * uniform();
-    const Vec3 h = FromSpherical(theta_h, 2.0 * std::numbers::pi * uniform());
+    const double theta_h = 0.5 * std::numbers::pi * Uniform(random);
+    const Vec3 h = FromSpherical(theta_h, 2.0 * std::numbers::pi * Uniform(random));
     const DirectionPair pair = {wi, 2.0 * Dot(wi, h) * h - wi};
     if (material.IsKnown(pair)) pairs.push_back(pair);
   }

@@ -2,32 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
 #include <numbers>
 #include <random>
 #include <vector>
 
-#include "pbnbrdf/base/files.h"
+#include "base/uniform.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kScales[] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};  // merl.h
-constexpr std::size_t kHeaderBytes = 12;
 const double kLeastIncidentCosine = std::cos(80.0 * std::numbers::pi / 180.0);
 
 class Deviates {
  public:
   explicit Deviates(std::uint64_t seed) : random_(seed) {}
 
-  // In (0, 1).
-  double Uniform() { return (static_cast<double>(random_() >> 32) + 0.5) * 0x1p-32; }
-
   // Box and Muller; std::normal_distribution differs between libraries.
   double Normal() {
-    const double radius = std::sqrt(-2.0 * std::log(Uniform()));
-    return radius * std::cos(2.0 * std::numbers::pi * Uniform());
+    const double radius = std::sqrt(-2.0 * std::log(Uniform(random_)));
+    return radius * std::cos(2.0 * std::numbers::pi * Uniform(random_));
   }
 
   double Noisy(double f, const Noise& noise) {
@@ -37,15 +30,13 @@ class Deviates {
 
   // With a cosine of at least `least`.
   Vec3 Direction(double least) {
-    const double theta = std::acos(least + (1.0 - least) * Uniform());
-    return FromSpherical(theta, 2.0 * std::numbers::pi * Uniform());
+    const double theta = std::acos(least + (1.0 - least) * Uniform(random_));
+    return FromSpherical(theta, 2.0 * std::numbers::pi * Uniform(random_));
   }
 
  private:
   std::mt19937_64 random_;
 };
-
-bool IsValid(const MerlBrdf& table, std::size_t bin) { return table.Stored(0, bin) >= 0.0; }
 
 // Sum of the fit's values over that of the samples', over their darker half in a channel.
 double DarkHalfRatio(std::span<const BrdfSample> samples, std::span<const Rgb> values,
@@ -65,24 +56,9 @@ double DarkHalfRatio(std::span<const BrdfSample> samples, std::span<const Rgb> v
 
 }  // namespace
 
-MerlBrdf NoisyTable(const Brdf& clean, const Noise& noise, std::uint64_t seed,
-                    const std::string& path) {
-  const MerlBrdf table = MerlBrdf::Tabulate(clean);
-  std::string bytes = table.FileBytes();
+MerlBrdf NoisyTable(const Brdf& clean, const Noise& noise, std::uint64_t seed) {
   Deviates deviates(seed);
-  for (std::size_t bin = 0; bin < MerlBrdf::kBins; ++bin) {
-    if (!IsValid(table, bin)) continue;
-    for (int c = 0; c < 3; ++c) {
-      const double f = table.Stored(c, bin) * kScales[c];
-      const double stored = deviates.Noisy(f, noise) / kScales[c];
-      const std::size_t place = static_cast<std::size_t>(c) * MerlBrdf::kBins + bin;
-      std::memcpy(&bytes[kHeaderBytes + place * sizeof(double)], &stored, sizeof(double));
-    }
-  }
-  WriteFile(path, bytes);
-  MerlBrdf noisy = MerlBrdf::Read(path);
-  std::filesystem::remove(path);
-  return noisy;
+  return MerlBrdf::Tabulate(clean).Changed([&](double f) { return deviates.Noisy(f, noise); });
 }
 
 ScatteredBrdf NoisyMeasurements(const Brdf& clean, std::size_t count, const Noise& noise,

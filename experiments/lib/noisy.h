@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/sources/merl.h"
@@ -16,10 +15,9 @@ struct Noise {
   double additive = 0.0;        // s >= 0, 1/sr
 };
 
-// A MERL table of an isotropic formula whose valid bins have noise, negative ones included. It is written to
-// `path`, read from there as any table is, and removed. Throws Error as MerlBrdf::Tabulate and Write do.
-MerlBrdf NoisyTable(const Brdf& clean, const Noise& noise, std::uint64_t seed,
-                    const std::string& path);
+// A MERL table of an isotropic formula whose valid bins have noise, negative ones included. Throws Error as
+// MerlBrdf::Tabulate does.
+MerlBrdf NoisyTable(const Brdf& clean, const Noise& noise, std::uint64_t seed);
 
 // A list of `count` measurements at directions uniform in solid angle, those of wi within 80 degrees.
 ScatteredBrdf NoisyMeasurements(const Brdf& clean, std::size_t count, const Noise& noise,

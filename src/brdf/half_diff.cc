@@ -24,8 +24,8 @@ HalfDiff ToHalfDiff(const DirectionPair& pair) {
 
 RusinkiewiczAngles ToAngles(const DirectionPair& pair) {
   const auto [h, d] = ToHalfDiff(pair);
-  return {.theta_h = std::atan2(std::hypot(h.x, h.y), h.z),
-          .theta_d = std::atan2(std::hypot(d.x, d.y), d.z),
+  return {.theta_h = Theta(h),
+          .theta_d = Theta(d),
           .phi_d = Azimuth(d.y, d.x),
           .phi_h = Azimuth(h.y, h.x)};
 }

@@ -16,7 +16,6 @@ constexpr double kSmallestCosine = 1e-4;
 constexpr std::size_t kNeighbors = 8;
 // Squared distance of measurements at one place: rounding of their angles.
 constexpr double kSamePlace = 1e-20;
-constexpr double kSameIncidence = 1e-3;  // radians: rounding of text
 
 ScatteredData Usable(ScatteredData data) {
   data.left_out += std::erase_if(data.samples, [](const BrdfSample& s) {
@@ -62,10 +61,6 @@ double ShepardWeight(double squared, double nearest, double farthest) {
   return weight * weight;
 }
 
-double IncidentAngle(const BrdfSample& sample) {
-  return std::atan2(std::hypot(sample.pair.wi.x, sample.pair.wi.y), sample.pair.wi.z);
-}
-
 }  // namespace
 
 std::array<double, 4> ScatteredPlace(const DirectionPair& pair, bool isotropic) {
@@ -86,6 +81,12 @@ std::array<double, 4> ScatteredPlace(const DirectionPair& pair, bool isotropic) 
   }
   const auto [x, y] = doubled(d.x * cos_phi_h - d.y * sin_phi_h, d.x * sin_phi_h + d.y * cos_phi_h);
   return {r * cos_phi_h, r * sin_phi_h, x, y};
+}
+
+std::array<double, 4> MirroredPlace(const DirectionPair& pair, bool isotropic) {
+  std::array<double, 4> place = ScatteredPlace(pair, isotropic);
+  if (isotropic) place[3] = std::abs(place[3]);
+  return place;
 }
 
 ScatteredBrdf::ScatteredBrdf(ScatteredData data)
@@ -125,7 +126,7 @@ double ScatteredBrdf::Certainty(const DirectionPair& pair) const {
 
 std::vector<double> ScatteredBrdf::IncidentAngles() const {
   std::vector<double> all, angles;
-  for (const BrdfSample& sample : data_.samples) all.push_back(IncidentAngle(sample));
+  for (const BrdfSample& sample : data_.samples) all.push_back(Theta(sample.pair.wi));
   std::sort(all.begin(), all.end());
   for (auto begin = all.begin(); begin != all.end();) {
     const auto end = std::upper_bound(begin, all.end(), *begin + kSameIncidence);
@@ -141,7 +142,7 @@ std::unique_ptr<Brdf> ScatteredBrdf::WithoutIncidentAngle(std::size_t index) con
   const double angle = IncidentAngles()[index];
   ScatteredData rest = data_;
   std::erase_if(rest.samples, [&](const BrdfSample& sample) {
-    return std::abs(IncidentAngle(sample) - angle) <= kSameIncidence;
+    return std::abs(Theta(sample.pair.wi) - angle) <= kSameIncidence;
   });
   return std::make_unique<ScatteredBrdf>(std::move(rest));
 }

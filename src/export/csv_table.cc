@@ -19,8 +19,6 @@ struct PairAngles {
   }
 };
 
-double Theta(const Vec3& v) { return std::atan2(std::hypot(v.x, v.y), v.z); }
-
 // Azimuths as they are, or turned so that phi_i = 0; in [-pi, pi].
 PairAngles ToPairAngles(const DirectionPair& pair, bool turn) {
   const double phi_i = std::atan2(pair.wi.y, pair.wi.x), phi_o = std::atan2(pair.wo.y, pair.wo.x);

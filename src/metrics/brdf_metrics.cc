@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "base/uniform.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/metrics/color.h"
 
@@ -18,8 +19,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDarkLuminance = 0.1;
 constexpr double kPercentile = 0.95;
 constexpr std::size_t kCoveragePairs = 10000;
-constexpr double kInPlane =
-    1e-3;  // sine of the angle between a direction and the plane: rounding of text
+// Sine of the angle between a direction and the plane: rounding of text.
+constexpr double kInPlane = 1e-3;
 
 std::vector<Rgb> ValuesAt(std::span<const BrdfSample> samples, const Brdf& brdf) {
   std::vector<DirectionPair> pairs;
@@ -106,9 +107,8 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
 
 // Uniform in solid angle.
 Vec3 RandomDirection(std::mt19937_64& random) {
-  const auto uniform = [&] { return (static_cast<double>(random() >> 32) + 0.5) * 0x1p-32; };
-  const double theta = std::acos(uniform());
-  return FromSpherical(theta, 2.0 * kPi * uniform());
+  const double theta = std::acos(Uniform(random));
+  return FromSpherical(theta, 2.0 * kPi * Uniform(random));
 }
 
 // Whether both directions are in a plane with the normal.

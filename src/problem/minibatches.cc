@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/uniform.h"
+
 namespace pbnbrdf {
 namespace {
 
@@ -60,13 +62,10 @@ void MinibatchStream::Draw(Minibatches* to) {
   for (int set = 0; set < kEnergySets; ++set) {
     for (int k = 0; k < energy_angles_; ++k) {
       // Uniform in cos theta_i, that is in solid angle, and stratified.
-      DrawAlbedo((k + Uniform()) / energy_angles_, to);
+      DrawAlbedo((k + Uniform(random_)) / energy_angles_, to);
     }
   }
 }
-
-// In (0, 1); std::uniform_real_distribution differs between libraries.
-double MinibatchStream::Uniform() { return (static_cast<double>(random_() >> 32) + 0.5) * 0x1p-32; }
 
 // Steps of the shuffle of Fisher and Yates: a minibatch of the samples that the epoch hasn't had
 // yet. Below 2^32 of them; std::shuffle differs between libraries.
@@ -96,9 +95,9 @@ void MinibatchStream::CopyBlock(std::span<const std::uint32_t> indices, float* b
 // network learn where the nodes are: half vectors at theta_h = (pi/2) t^2.
 void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
   const int n_theta = problem_.terms.energy_theta, n_phi = problem_.terms.energy_phi;
-  const double phi_i = IsIsotropic(encoding_) ? 0.0 : 2.0 * kPi * Uniform();
+  const double phi_i = IsIsotropic(encoding_) ? 0.0 : 2.0 * kPi * Uniform(random_);
   const Vec3 wi = FromSpherical(std::acos(cos_i), phi_i);
-  const double shift_t = Uniform(), shift_phi = Uniform();
+  const double shift_t = Uniform(random_), shift_phi = Uniform(random_);
   const std::size_t first_block = to->nodes.size() / (Minibatches::kNodeRows * kBatch);
   std::size_t nodes = 0;
   for (int i = 0; i < n_theta; ++i) {

@@ -68,7 +68,6 @@ class MinibatchStream {
   void Draw(Minibatches* to);
 
  private:
-  double Uniform();
   std::span<const std::uint32_t> DrawIndices(std::size_t first);
   void CopyBlock(std::span<const std::uint32_t> indices, float* block) const;
   void DrawAlbedo(double cos_i, Minibatches* to);

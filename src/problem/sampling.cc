@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/uniform.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/brdf/scattered.h"
@@ -24,12 +25,7 @@ constexpr double kPlacesPerUnit = 1e6;
 // (experiments/measured.cc).
 constexpr double kMeasuredPart = 0.4;
 
-// Uniform on the grid (k + 1/2) 2^-32; std::uniform_real_distribution differs between libraries.
-double Uniform(std::mt19937_64& random) {
-  return (static_cast<double>(random() >> 32) + 0.5) * 0x1p-32;
-}
-
-// The same on the points with even k (training) or odd k (held out).
+// Uniform on the points of the same grid with even k (training) or odd k (held out).
 double UniformOf(SampleSet set, std::mt19937_64& random) {
   const std::uint64_t even = (random() >> 33) << 1;
   return (static_cast<double>(even + (set == SampleSet::kHeldOut)) + 0.5) * 0x1p-32;
@@ -51,9 +47,7 @@ std::uint64_t Mix(std::uint64_t x) {
 // The same for all measurements at one place, but for rounding.
 std::uint64_t PlaceHash(const DirectionPair& pair, bool isotropic) {
   std::uint64_t hash = 0;
-  std::array<double, 4> place = ScatteredPlace(pair, isotropic);
-  if (isotropic) place[3] = std::abs(place[3]);
-  for (double x : place) {
+  for (double x : MirroredPlace(pair, isotropic)) {
     hash = Mix(hash + static_cast<std::uint64_t>(std::llround(x * kPlacesPerUnit)) + 1);
   }
   return hash;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <string>
 
 #include "pbnbrdf/base/error.h"
@@ -17,22 +16,13 @@ constexpr std::array<const char*, 4> kDegrees = {"theta_i_deg", "phi_i_deg", "th
                                                  "phi_o_deg"};
 constexpr std::array<const char*, 6> kVectors = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 
-// Where those columns are that there are.
-std::vector<std::size_t> FindAll(const TextTable& table, std::span<const char* const> names) {
-  std::vector<std::size_t> columns;
-  for (const char* name : names) {
-    if (const auto at = table.FindColumn(name)) columns.push_back(*at);
-  }
-  return columns;
-}
-
 }  // namespace
 
 std::optional<DirectionColumns> DirectionColumns::Find(TextTable* table) {
   table->NameColumns();
-  const std::vector<std::size_t> radians = FindAll(*table, kAngles),
-                                 degrees = FindAll(*table, kDegrees),
-                                 vectors = FindAll(*table, kVectors);
+  const std::vector<std::size_t> radians = table->FindColumns(kAngles),
+                                 degrees = table->FindColumns(kDegrees),
+                                 vectors = table->FindColumns(kVectors);
   const bool has_vectors = vectors.size() == kVectors.size();
   if (!has_vectors && radians.size() + degrees.size() < kAngles.size()) {
     table->ForgetNames();

@@ -148,6 +148,18 @@ MerlBrdf MerlBrdf::Tabulate(const Brdf& source) {
   return MerlBrdf({}, std::move(planes));
 }
 
+MerlBrdf MerlBrdf::Changed(const std::function<double(double f)>& change) const {
+  std::vector<double> planes = planes_;
+  for (std::size_t bin = 0; bin < grid_.bins(); ++bin) {
+    if (!IsValid(bin)) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      double& stored = planes[c * grid_.bins() + bin];
+      stored = change(stored * kScale[c]) / kScale[c];
+    }
+  }
+  return MerlBrdf(grid_, std::move(planes));
+}
+
 std::string MerlBrdf::FileBytes() const {
   const std::array<std::int32_t, 3> header = {grid_.theta_h, grid_.theta_d, grid_.phi_d};
   const std::size_t table_bytes = kBinBytes * grid_.bins();

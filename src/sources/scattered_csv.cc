@@ -1,5 +1,6 @@
 // ReadScatteredCsv of scattered_files.h.
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "base/text.h"
@@ -12,7 +13,7 @@
 namespace pbnbrdf {
 namespace {
 
-using Names = std::initializer_list<const char*>;
+using Names = std::array<const char*, 3>;
 
 const std::string kWanted = std::string(kDirectionColumns) + ", and value or r,g,b";
 
@@ -23,14 +24,11 @@ struct Columns {
 };
 
 // Of all the names, else of the single one, else none. Throws Error if both are there.
-std::vector<std::size_t> FindAll(const TextTable& table, Names all, const char* single) {
-  std::vector<std::size_t> columns;
-  for (const char* name : all) {
-    if (const auto at = table.FindColumn(name)) columns.push_back(*at);
-  }
+std::vector<std::size_t> FindAll(const TextTable& table, const Names& all, const char* single) {
+  const std::vector<std::size_t> columns = table.FindColumns(all);
   const auto at = table.FindColumn(single);
   if (columns.size() != all.size()) return at ? std::vector{*at} : std::vector<std::size_t>();
-  if (at) Fail(table.path(), ": columns ", single, " and ", *all.begin(), ", ...; leave out one");
+  if (at) Fail(table.path(), ": columns ", single, " and ", all[0], ", ...; leave out one");
   return columns;
 }
 

@@ -115,6 +115,14 @@ std::optional<std::size_t> TextTable::FindColumn(std::string_view name) const {
   return found;
 }
 
+std::vector<std::size_t> TextTable::FindColumns(std::span<const char* const> names) const {
+  std::vector<std::size_t> columns;
+  for (const char* name : names) {
+    if (const auto at = FindColumn(name)) columns.push_back(*at);
+  }
+  return columns;
+}
+
 void TextTable::RequireCells(std::size_t count, std::string_view what) const {
   if (cells_of_line_.size() == count) return;
   Fail(Place(), ": ", cells_of_line_.size(), " ", what, ", expected ", count,

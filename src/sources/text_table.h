@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,9 @@ class TextTable {
 
   // Whatever its capitals. Throws Error if two columns have that name.
   std::optional<std::size_t> FindColumn(std::string_view name) const;
+
+  // Where those are that there are, in the order of the names.
+  std::vector<std::size_t> FindColumns(std::span<const char* const> names) const;
 
   // Throws Error "FILE: line 12: 3 columns, expected 4".
   void RequireCells(std::size_t count, std::string_view what = "columns") const;

@@ -1,6 +1,7 @@
 #include "pbnbrdf/brdf/reciprocal.h"
 
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 
 namespace pbnbrdf {
 namespace {
@@ -24,12 +25,6 @@ class OneSidedBrdf final : public Brdf {
  private:
   static constexpr double kDegree = kPi / 180.0;
 };
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 TEST(Reciprocal, IsTheMeanOfBothOrdersWeightedByCertainty) {
   const OneSidedBrdf source;

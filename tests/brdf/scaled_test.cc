@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
@@ -13,12 +14,6 @@ namespace pbnbrdf {
 namespace {
 
 using testing::HasSubstr;
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 // The largest albedo at angles that LargestAlbedo doesn't look at.
 double LargestBetween(const Brdf& brdf) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 #include "pbnbrdf/brdf/scaled.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/problem/sampling.h"
@@ -11,12 +12,6 @@ namespace pbnbrdf {
 namespace {
 
 using testing::HasSubstr;
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 // A model, measured at random directions.
 ScatteredBrdf Measured(const Brdf& model, std::size_t count, unsigned seed) {

@@ -4,43 +4,13 @@
 #include <set>
 
 #include "base/text.h"
-#include "pbnbrdf/base/files.h"
-#include "pbnbrdf/image/png.h"
-#include "process.h"
-#include "test_util.h"
+#include "experiments/run_experiment.h"
 
 namespace pbnbrdf {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-std::string Read(const std::string& path) { return ReadFile(path, 1 << 24); }
-
-// The rows of a CSV below its header, which must be `header`.
-std::vector<std::vector<std::string>> ReadRows(const std::string& path, const std::string& header) {
-  std::vector<std::vector<std::string>> rows;
-  const std::vector<std::string> lines = Split(Read(path), '\n');
-  EXPECT_EQ(lines[0], header);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (lines[i].empty()) continue;
-    rows.push_back(Split(lines[i], ','));
-    EXPECT_EQ(rows.back().size(), Split(header, ',').size()) << lines[i];
-  }
-  return rows;
-}
-
-void ExpectFigure(const std::string& path) {
-  if (RunProgram({"gnuplot", "--version"}).status != 0) return;
-  EXPECT_THAT(Read(path), HasSubstr("</svg>"));
-}
-
-ProgramResult RunIn(const TemporaryFolder& folder, const std::string& program,
-                    std::vector<std::string> flags) {
-  flags.insert(flags.begin(),
-               {PBNBRDF_EXPERIMENTS "/" + program, "--out_dir=" + (folder / "results")});
-  return RunProgram(flags);
-}
 
 constexpr char kTraceHeader[] =
     "material,material_class,solver,hidden,seed,iteration,seconds,cost,heldout_error";
@@ -323,124 +293,6 @@ TEST(Noise, RejectsWhatItCantDo) {
     EXPECT_EQ(RunIn(folder, "noise", {flag, "builtin:blue-plastic"}).status, 1) << flag;
   }
 }
-
-#ifdef PBNBRDF_HAS_RENDER
-const std::vector<std::string> kTinyImages = {"--film_width=16", "--samples_per_pixel=2",
-                                              "--max_seconds=0.1", "--threads=1"};
-
-TEST(SceneFit, WritesEveryFitAndTheTable) {
-  const TemporaryFolder folder;
-  std::vector<std::string> flags = kTinyImages;
-  flags.insert(flags.end(),
-               {"--scenes=" PBNBRDF_SCENES "/sphere.json," PBNBRDF_SCENES "/one_of_many.json",
-                "--samples=300", "--seeds=1,2", "builtin:blue-plastic", "lambert:rho_d=0.5"});
-  const ProgramResult run = RunIn(folder, "scene_fit", flags);
-  ASSERT_EQ(run.status, 0);
-  const auto rows =
-      ReadRows(folder / "results/scene_fit.csv", "scene,material,method,samples,seed,rmse,flip");
-  ASSERT_EQ(rows.size(), 2u * 2u * 3u * 2u);
-  std::set<std::string> images;
-  for (const auto& row : rows) {
-    EXPECT_GT(ParseNumber("rmse", row[5]), 0.0);
-    images.insert(row[5]);
-  }
-  EXPECT_EQ(images.size(), rows.size());  // each fit has its own
-  for (const char* text :
-       {"| sphere ", "| one_of_many ", "| blue-plastic ", "**median**", "**worst**"}) {
-    EXPECT_THAT(run.output, HasSubstr(text));
-  }
-}
-
-TEST(SceneFit, RejectsWhatItCantDo) {
-  const TemporaryFolder folder;
-  for (const char* flag : {"--samples=2", "--film_width=5", "--scenes=absent.json", "--seeds=a",
-                           "--slot=absent", "--scene_floor=2"}) {
-    std::vector<std::string> flags = kTinyImages;
-    flags.insert(flags.end(), {"--scenes=" PBNBRDF_SCENES "/one_of_many.json", "--samples=300",
-                               flag, "lambert:rho_d=0.5"});
-    EXPECT_EQ(RunIn(folder, "scene_fit", flags).status, 1) << flag;
-  }
-}
-
-TEST(Picture, WritesThePictureAndItsNumbers) {
-  const TemporaryFolder folder;
-  std::vector<std::string> flags = kTinyImages;
-  flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", "--epochs=0",
-                             "builtin:satin-gold", "builtin:wall-plaster"});
-  const ProgramResult run = RunIn(folder, "picture", flags);
-  ASSERT_EQ(run.status, 0);
-  const Image picture = ReadPng(folder / "results/picture.png");
-  EXPECT_EQ(picture.width, 5 * 16);
-  EXPECT_EQ(picture.height, 2 * 16);
-  EXPECT_GT(picture.pixel(8, 8)[0], picture.pixel(8, 8)[2]);  // gold
-  const auto sum = [&](int panel) {
-    float all = 0.0f;
-    for (int y = 0; y < 32; ++y) {
-      for (int x = 16 * panel; x < 16 * (panel + 1); ++x) all += picture.pixel(x, y)[0];
-    }
-    return all;
-  };
-  EXPECT_GT(sum(3), sum(4));  // errors of a network that hasn't been trained, and of ours
-  for (const char* text : {"| satin-gold ", "| published recipe ", "| ours "}) {
-    EXPECT_THAT(run.output, HasSubstr(text));
-  }
-}
-
-// Measured towards many directions from each of five angles.
-void WriteMeasurements(const std::string& path) {
-  std::string csv = "theta_i,phi_i,theta_o,phi_o,value\n";
-  for (double theta_i : {0.1, 0.4, 0.7, 1.0, 1.3}) {
-    for (int k = 0; k < 60; ++k) {
-      const double theta_o = 0.02 * k, phi_o = std::fmod(2.4 * k, 6.28);
-      const double value = 0.2 + std::exp(-8.0 * std::pow(theta_o - theta_i, 2)) * (k % 2);
-      csv += StrCat(theta_i, ",0,", theta_o, ",", phi_o, ",", value, "\n");
-    }
-  }
-  WriteBytes(path, csv);
-}
-
-TEST(Measured, HasATableForEachQuantity) {
-  const TemporaryFolder folder;
-  std::vector<std::string> flags = kTinyImages;
-  flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", "--epochs=0", "--adam",
-                             "--analytic", "builtin:satin-gold"});
-  const ProgramResult run = RunIn(folder, "measured", flags);
-  ASSERT_EQ(run.status, 0);
-  for (const char* text :
-       {"### Error at measured directions", "### Error at all directions",
-        "### Largest directional albedo", "### Mean Delta E 2000", "### CPU seconds",
-        "### PSNR to the material, dB", "### SSIM to the material", "### FLIP to its reciprocal",
-        "### PSNR to what our fit aims at, dB", "| floor ", "| our Adam ", "| analytic ", "| ours ",
-        "| satin-gold ", "- ours over analytic: median "}) {
-    EXPECT_THAT(run.output, HasSubstr(text));
-  }
-  EXPECT_THAT(run.output, Not(HasSubstr("left out")));  // a formula has no angles
-  EXPECT_EQ(Read(folder / "results/measured.md"), run.output);
-}
-
-TEST(Measured, LeavesOutEachInteriorAngleOfAList) {
-  const TemporaryFolder folder;
-  WriteMeasurements(folder / "list.csv");
-  std::vector<std::string> flags = kTinyImages;
-  flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", folder / "list.csv"});
-  const ProgramResult run = RunIn(folder, "measured", flags);
-  ASSERT_EQ(run.status, 0);
-  EXPECT_THAT(run.output, Not(HasSubstr("PSNR")));  // a list has no picture
-  EXPECT_THAT(run.output, HasSubstr("### Error at incident angles left out"));
-  EXPECT_THAT(run.output, testing::ContainsRegex("below 1 at [0-3] of 3 angles"));
-}
-
-TEST(Measured, RejectsWhatItCantDo) {
-  const TemporaryFolder folder;
-  for (const char* flag : {"--film_width=5", "--scene=absent.json", "--epochs=-1", "absent.bsdf"}) {
-    std::vector<std::string> flags = kTinyImages;
-    flags.insert(flags.end(), {"--scene=" PBNBRDF_SCENES "/sphere.json", flag});
-    EXPECT_EQ(RunIn(folder, "measured", flags).status, 1) << flag;
-  }
-  EXPECT_EQ(RunIn(folder, "measured", {"--scene=" PBNBRDF_SCENES "/sphere.json"}).status, 1);
-}
-
-#endif  // PBNBRDF_HAS_RENDER
 
 constexpr char kStabilityHeader[] =
     "run,material,stress,solver,loss,terms,encoding,precision,activation,initialization,sampling,"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "brdf/value_at.h"
 #include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/models/analytic.h"
@@ -10,12 +11,6 @@
 
 namespace pbnbrdf {
 namespace {
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 // The value says which sample it is.
 ScatteredBrdf Numbered(const std::vector<double>& angles, int at_each) {

@@ -1,5 +1,6 @@
 // Every analytic model: reciprocity, signs, and the limits that its formula has.
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 #include "models/facets.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/models/analytic.h"
@@ -8,12 +9,6 @@ namespace pbnbrdf {
 namespace {
 
 constexpr Vec3 kNormal = {0.0, 0.0, 1.0};
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 double RedAt(const std::string& text, const DirectionPair& pair) {
   return ValueAt(AnalyticBrdf::FromText(text), pair)[0];

@@ -3,17 +3,12 @@
 #include <set>
 
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/models/builtin.h"
 
 namespace pbnbrdf {
 namespace {
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 // A material turned about the normal.
 class TurnedBrdf final : public PointwiseBrdf {

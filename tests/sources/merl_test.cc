@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/problem/sampling.h"
@@ -36,12 +37,6 @@ DirectionPair PairAt(double h, double d, double p) {
   return FromAngles({.theta_h = kPi / 2 * (h / 90) * (h / 90),
                      .theta_d = kPi / 2 * d / 90,
                      .phi_d = kPi * p / 180});
-}
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
 }
 
 TEST(Merl, FilesRoundTripToTheBit) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "brdf/direction_pairs.h"
+#include "brdf/value_at.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "sources/rgl_writer.h"
 
@@ -13,12 +14,6 @@ using testing::HasSubstr;
 
 const std::vector<std::string> kFiles = {"synth_plastic_rgb.bsdf", "synth_gold_rgb.bsdf",
                                          "synth_brushed_rgb.bsdf", "synth_satin_spec.bsdf"};
-
-Rgb ValueAt(const Brdf& brdf, const DirectionPair& pair) {
-  Rgb value;
-  brdf.Evaluate({&pair, 1}, {&value, 1});
-  return value;
-}
 
 // A unit vector that went through single precision.
 Vec3 Rounded(double theta, double phi) {

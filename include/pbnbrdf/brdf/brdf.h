@@ -63,7 +63,7 @@ class Brdf {
   // directions. None of formulas, of networks, and of tables over the half vector.
   virtual std::vector<double> IncidentAngles() const { return {}; }
 
-  // As if nothing had been measured at IncidentAngles()[index], neither the first nor the last one.
+  // As if IncidentAngles()[index], neither the first nor the last one, had not been measured; else null.
   virtual std::unique_ptr<Brdf> WithoutIncidentAngle(std::size_t) const { return nullptr; }
 
   // Whether f was measured at directions that have nothing to do with the rows of a MERL table.

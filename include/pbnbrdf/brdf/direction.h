@@ -25,6 +25,9 @@ inline Vec3 FromSpherical(double theta, double phi) {
   return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
 }
 
+// The angle to the normal, in [0, pi]; exact near the pole, where acos isn't.
+inline double Theta(const Vec3& a) { return std::atan2(std::hypot(a.x, a.y), a.z); }
+
 // Linear R, G, B.
 using Rgb = std::array<double, 3>;
 

@@ -36,6 +36,9 @@ struct ScatteredData {
 // The coordinates above.
 std::array<double, 4> ScatteredPlace(const DirectionPair& pair, bool isotropic);
 
+// The same, where a pair and its mirror image of an isotropic material are at one place.
+std::array<double, 4> MirroredPlace(const DirectionPair& pair, bool isotropic);
+
 class ScatteredBrdf final : public Brdf {
  public:
   static constexpr double kMirrorGap = 0.05;
@@ -55,8 +58,10 @@ class ScatteredBrdf final : public Brdf {
   // 1 at a measurement, 1/2 at a quarter of kReach from the nearest one.
   double Certainty(const DirectionPair& pair) const override;
 
-  // Those that at least kLeastAtAngle measurements have in common, within 0.001.
+  // Those that at least kLeastAtAngle measurements have in common, within kSameIncidence (radians): rounding of
+  // text.
   std::vector<double> IncidentAngles() const override;
+  static constexpr double kSameIncidence = 1e-3;
   static constexpr std::size_t kLeastAtAngle = 10;
 
   // Measurements towards that angle stay: by reciprocity they say something of it.

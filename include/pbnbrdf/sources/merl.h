@@ -16,6 +16,7 @@
 //     2003.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class MerlBrdf final : public Brdf {
   // `source` at each bin's corner; invalid where it isn't known or a cosine is at most 1e-4. Throws
   // Error if it is anisotropic: a table has no phi_h.
   static MerlBrdf Tabulate(const Brdf& source);
+
+  // The same bins with change(f) in the place of each f, 1/sr: the channels of a valid bin one after the
+  // other, bin after bin. A negative result is noise.
+  MerlBrdf Changed(const std::function<double(double f)>& change) const;
 
   std::string FileBytes() const;
 

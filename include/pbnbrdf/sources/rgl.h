@@ -41,12 +41,12 @@ class RglBrdf final : public Brdf {
   bool IsKnown(const DirectionPair& pair) const override;
 
   // The same tables, interpolated over theta_i between the format's own way, linear, and a monotone cubic [2]
-  // of log(v + 0.03), v being a table's value: three tenths of one and seven of the other. With both
+  // of log(v + 0.03), v being a table's value: four tenths of one and six of the other. With both
   // orders averaged, as a reciprocal fit has them, that is nearer to measurements that were left out than the
   // cubic alone.
   std::unique_ptr<Brdf> BestEstimate() const override;
 
-  // 1 at a measured theta_i, less in between: 1 / (1 + (8 d)^2), d the distance to the nearest one as a
+  // 1 at a measured theta_i, less in between: 1 / (1 + (7 d)^2), d the distance to the nearest one as a
   // fraction of the interval.
   double Certainty(const DirectionPair& pair) const override;
   std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override;
