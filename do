@@ -93,7 +93,7 @@ run_tests() {
 # The tests under the address and undefined behaviour sanitizers, but those that run other programs.
 sanitize() {
   configure build-sanitize -DPBNBRDF_SANITIZE=ON -DPBNBRDF_BENCHMARKS=OFF \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
   cmake --build build-sanitize --parallel "$(nproc)"
   ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" \
     --exclude-regex '^(package|interop_.*|GlslSource\..*)$'

@@ -22,12 +22,12 @@ only() {
 }
 only 'gflags|glog' cli
 only 'ceres|Eigen' models residuals problem solve
-only 'nlohmann' models network render cli
+only 'nlohmann' base models network render cli
 only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image
 only 'embree' render
 only 'hwy' kernels network
-only 'tbb' brdf models problem solve metrics render
+only 'tbb' base solve render
 
 # Public headers that bring in Ceres are those about Ceres problems.
 if grep -rlE '#include [<"]ceres' include | grep -vE 'problem/ceres_problem.h|residuals/'; then

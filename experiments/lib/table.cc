@@ -23,7 +23,7 @@ std::string MarkdownLine(const Row& cells, const std::vector<std::size_t>& width
   std::string line = "|";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string blanks(widths[i] - cells[i].size(), ' ');
-    line += " " + (right[i] ? blanks + cells[i] : cells[i] + blanks) + " |";
+    line.append(" ").append(right[i] ? blanks + cells[i] : cells[i] + blanks).append(" |");
   }
   return line + "\n";
 }

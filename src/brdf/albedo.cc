@@ -1,7 +1,5 @@
 #include "pbnbrdf/brdf/albedo.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/parallel.h"
 #include "pbnbrdf/brdf/merl_rows.h"
 
 namespace pbnbrdf {
@@ -224,14 +223,13 @@ void Fill(const RefinedAlbedo& refined, const AlbedoGrid& grid, std::span<Incide
   const auto wi = [&](std::size_t n) {
     return FromSpherical(profile[n].theta_i, profile[n].phi_i);
   };
-  tbb::parallel_for(std::size_t{0}, profile.size(),
-                    [&](std::size_t n) { estimates[n] = refined.At(wi(n)); });
+  ParallelFor(profile.size(), [&](std::size_t n) { estimates[n] = refined.At(wi(n)); });
   // Below these, albedos are of no interest.
   Rgb bound = {grid.refine_above, grid.refine_above, grid.refine_above};
   for (std::atomic<bool> goes_on = true; goes_on;) {
     goes_on = false;
     for (const Estimate& estimate : estimates) RefinedAlbedo::Raise(estimate, &bound);
-    tbb::parallel_for(std::size_t{0}, profile.size(), [&](std::size_t n) {
+    ParallelFor(profile.size(), [&](std::size_t n) {
       if (refined.Refine(wi(n), bound, &estimates[n])) goes_on = true;
     });
   }
@@ -351,6 +349,13 @@ Rgb LargestAlbedos(const std::vector<IncidentAlbedo>& profile) {
     for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], at.albedo[c]);
   }
   return largest;
+}
+
+const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
+  return *std::max_element(profile.begin(), profile.end(),
+                           [channel](const IncidentAlbedo& a, const IncidentAlbedo& b) {
+                             return a.albedo[channel] < b.albedo[channel];
+                           });
 }
 
 }  // namespace pbnbrdf

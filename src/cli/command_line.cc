@@ -1,7 +1,5 @@
 #include "command_line.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/text.h"
 #include "pbnbrdf/base/files.h"
 
@@ -120,10 +118,6 @@ void CheckOutputs(const std::vector<Output>& outputs) {
   for (const Output& output : outputs) {
     if (!output.path.empty()) CheckWritable(output.path);
   }
-}
-
-std::string JsonText(const Json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace pbnbrdf::cli

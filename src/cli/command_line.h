@@ -3,12 +3,12 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/fields.h"
+#include "base/json.h"
 
 namespace pbnbrdf::cli {
 
@@ -24,7 +24,6 @@ auto CheckFlags(Function function) {
 }
 
 using Arguments = std::vector<std::string>;
-using Json = nlohmann::ordered_json;
 
 struct Command {
   std::string name;
@@ -61,9 +60,6 @@ struct Output {
 // To be called before the work. Throws UsageError if two flags name the same file, Error if one can't be
 // written.
 void CheckOutputs(const std::vector<Output>& outputs);
-
-// As a file has it: indented, whatever bytes its texts have.
-std::string JsonText(const Json& json);
 
 // The subcommands, each in a file of its own.
 Command CompareCommand();

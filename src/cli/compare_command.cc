@@ -155,7 +155,7 @@ int RunCompare(const CompareOptions& options, const Arguments& arguments) {
   CheckOutputs({{"error_map", options.error_map}});
   const Measured measured = Compare(options, arguments[0], arguments[1]);
   if (options.json) {
-    std::cout << ToJson(measured).dump(2) << "\n";
+    std::cout << JsonText(ToJson(measured));
   } else {
     PrintText(measured);
   }

@@ -58,9 +58,9 @@ Command EvalCommand() {
           R"(The first line of the CSV file names its columns. They must include theta_i,phi_i,theta_o,phi_o
 (radians; theta_i_deg, ...: degrees) or wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (vectors of any length); wi
 points to the light, wo to the viewer; a negative theta is on the other side of the normal. Columns
-are separated by commas, semicolons, tabs or blanks. All are kept, and r,g,b are appended: linear RGB
-in 1/sr, without the cosine, with 17 significant digits. Values are 0 where a direction isn't above
-the horizon. Rows that lack a direction are left out.
+are separated by commas, semicolons, tabs or blanks. All are kept, and r,g,b are appended: linear
+RGB in 1/sr, without the cosine, with 17 significant digits. Values are 0 where a direction isn't
+above the horizon. Rows that lack a direction are left out.
 
 )",
           kSourceNotes)}

@@ -64,7 +64,7 @@ Fields FitModelFields(FitModelOptions* options) {
 Json FitJson(const FitModelOptions& options, const AnalyticFit& fit, std::size_t samples,
              const Json& errors) {
   FitModelOptions copy = options;
-  Json json = Json::parse(fit.brdf.Json());
+  Json json = ParseJson(fit.brdf.Json());
   json["source"] = fit.brdf.Text();
   json["version"] = PBNBRDF_VERSION;
   json["material"] = options.material.source;

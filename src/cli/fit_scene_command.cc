@@ -232,9 +232,9 @@ Command FitSceneCommand() {
       .notes =
           R"(A quick render finds out which materials the image shows, and at which angles. Each of them is
 fitted at these angles, by the flags above, and written to OUT_DIR/NAME.safetensors, where render
---fits=OUT_DIR finds it. A material that hardly changes the image (a change of log(1 + f cos)
-changes it by less than a hundredth of that) gets --hidden=8,8 and at most 6000 samples. A material
-that the image doesn't show is not fitted.
+--fits=OUT_DIR finds it. A material that hardly shows (a change of its log(1 + f cos) by 0.1 would
+change the image by less than 0.1 %) gets --hidden=8,8 and at most 6000 samples. A material that the
+image doesn't show is not fitted.
 The summary says of each material what was done and why, and records the flags that repeat its fit.
 Ctrl-C ends the fits and keeps the networks so far.
 )"}

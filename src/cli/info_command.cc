@@ -116,7 +116,7 @@ int RunInfo(const Arguments& arguments) {
 
 Command InfoCommand() {
   return Command{.name = "info",
-                 .summary = "says what a source of reflectance is",
+                 .summary = "describes a source of reflectance",
                  .usage = R"(  pbnbrdf info gold.safetensors
   pbnbrdf info builtin:          lists the materials that come with the program
   pbnbrdf info models:           lists the analytic models and their parameters

@@ -25,19 +25,19 @@ Field SymmetrizeField(bool* symmetrize);
 
 // How every command that reads a material explains --material.
 inline constexpr char kSourceNotes[] =
-    R"(Sources of reflectance; files are told by what they hold, whatever their names:
+    R"(Sources of reflectance; the format of a file is told by its content, not its name:
   FILE.binary                  a table in the format of the MERL BRDF database
   FILE.bsdf                    a measurement of the RGL material database, RGB or spectral, or a
                                tabular BRDF of Zemax
   FILE.alta, FILE.dat          measurements in the text format of ALTA
   FILE.brdf                    spectral measurements of Cornell's goniometer
-  FILE.astm                    measurements as ASTM E1392 has them
-  FILE.txt                     measurements in the text of FRED, or in one plane: columns
+  FILE.astm                    measurements in the format of ASTM E1392
+  FILE.txt                     measurements in the text format of FRED, or in one plane: columns
                                phi_in theta_in phi_out theta_out brdf
   FILE.csv                     measurements at any directions: columns theta_i,phi_i,theta_o,phi_o
                                (radians; theta_i_deg, ...: degrees) or wi_x,wi_y,wi_z,wo_x,..., and
                                value or r,g,b: f in 1/sr; sigma, its standard deviation, may follow.
-                               The material is taken for anisotropic if phi_i varies by other than
+                               The material is taken for anisotropic if phi_i varies by anything but
                                180 degrees, unless a line '# isotropic' or '# anisotropic' says what
                                it is
   sgd:PARAMETERS.csv#MATERIAL  the shifted gamma distribution model (Bagher et al. 2012)

@@ -62,7 +62,7 @@ int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
   const Json measures = About(options.material.source, [&] {
     return MeasureFit(*material, *fit.brdf, fit.parameters, options.measure);
   });
-  std::cout << (options.json ? measures.dump(2) + "\n" : MeasuresText(measures));
+  std::cout << (options.json ? JsonText(measures) : MeasuresText(measures));
   return 0;
 }
 

@@ -148,7 +148,7 @@ std::string MeasuresText(const Json& measures) {
     } else if (value.is_string()) {
       text << value.get<std::string>() + "  ";
     } else {
-      text << value.dump();
+      text << JsonLine(value);
     }
     text << meaning << "\n";
   }

@@ -76,7 +76,7 @@ std::string WeightArray(const LayerWeights& layer, const std::string& array) {
   for (int o = 0; o < layer.out; ++o) {
     std::string line = "   ";
     for (int i = 0; i <= layer.in; ++i) {
-      const std::string literal = " " + Literal(layer.weight(o, i)) + ",";
+      const std::string literal = StrCat(" ", Literal(layer.weight(o, i)), ",");
       if (line.size() + literal.size() > kColumns) {
         text += line + "\n";
         line = "     ";

@@ -4,6 +4,7 @@
 #include "export/code.h"
 #include "export/formats.h"
 #include "export/protobuf.h"
+#include "pbnbrdf/base/error.h"
 #include "pbnbrdf/network/mlp.h"
 
 namespace pbnbrdf {
@@ -75,7 +76,7 @@ class OnnxGraph {
   std::string Model(const Names& inputs, const std::string& output, const std::string& about) const;
 
  private:
-  std::string NewName() { return "v" + std::to_string(names_++); }
+  std::string NewName() { return StrCat("v", names_++); }
   void AddNode(const std::string& type, const Names& inputs, const Names& outputs,
                const Attributes& attributes);
 

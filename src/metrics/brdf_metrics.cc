@@ -1,13 +1,12 @@
 #include "pbnbrdf/metrics/brdf_metrics.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/uniform.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/metrics/color.h"
@@ -76,8 +75,8 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
                       Function function) {
   const std::vector<double> azimuths = MeanAzimuths(brdf);
   std::vector<double> rows(n_theta_h, 0.0);
-  tbb::parallel_for(0, n_theta_h, [&](int h) {
-    const double t = (h + 0.5) / n_theta_h;
+  ParallelFor(rows.size(), [&](std::size_t h) {
+    const double t = (static_cast<double>(h) + 0.5) / n_theta_h;
     std::vector<DirectionPair> pairs, swapped;
     for (int d = 0; d < n_theta_d; ++d) {
       for (int p = 0; p < n_phi; ++p) {

@@ -1,10 +1,10 @@
 #include "metrics/planes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "base/parallel.h"
 
 namespace pbnbrdf {
 namespace {
@@ -55,7 +55,8 @@ Plane Filter(const Plane& plane, const Kernel& across, const Kernel& down) {
 }
 
 void ForEachRow(int height, const std::function<void(int)>& function) {
-  tbb::parallel_for(0, height, function);
+  ParallelFor(static_cast<std::size_t>(height),
+              [&](std::size_t y) { function(static_cast<int>(y)); });
 }
 
 double SumRows(int height, const std::function<double(int)>& row_sum) {

@@ -78,7 +78,7 @@ std::string TextOf(const AnalyticModel& model,
     const bool all_equal = std::count(values.begin(), values.end(), values[0]) ==
                            static_cast<std::ptrdiff_t>(values.size());
     for (std::size_t c = 0; c < (all_equal ? 1 : values.size()); ++c) {
-      text += (c == 0 ? "" : "/") + format(values[c]);
+      text.append(c == 0 ? "" : "/").append(format(values[c]));
     }
   }
   return StrCat(model.name, ":", text);

@@ -1,6 +1,7 @@
 // Analytic models as JSON.
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/analytic.h"
@@ -8,20 +9,18 @@
 namespace pbnbrdf {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr std::uintmax_t kMaxFileSize = 1 << 20;
 
-std::vector<double> NumbersOf(const std::string& name, const ordered_json& value) {
+std::vector<double> NumbersOf(const std::string& name, const Json& value) {
   std::vector<double> numbers;
-  for (const ordered_json& number : value.is_array() ? value : ordered_json::array({value})) {
+  for (const Json& number : value.is_array() ? value : Json::array({value})) {
     if (!number.is_number()) Fail("parameter ", name, ": expected a number or three");
     numbers.push_back(number.get<double>());
   }
   return numbers;
 }
 
-AnalyticBrdf FromJson(const ordered_json& json) {
+AnalyticBrdf FromJson(const Json& json) {
   if (!json.is_object() || !json.contains("model") || !json.at("model").is_string() ||
       !json.contains("parameters") || !json.at("parameters").is_object()) {
     Fail("not an analytic model: expected a JSON object with \"model\" and \"parameters\"");
@@ -36,25 +35,22 @@ AnalyticBrdf FromJson(const ordered_json& json) {
 }  // namespace
 
 AnalyticBrdf AnalyticBrdf::Read(const std::string& path) {
-  const ordered_json json = ordered_json::parse(ReadFile(path, kMaxFileSize), nullptr,
-                                                /*allow_exceptions=*/false);
+  const pbnbrdf::Json json = ParseJson(ReadFile(path, kMaxFileSize));
   try {
     if (json.is_discarded()) Fail("not a JSON file");
     AnalyticBrdf brdf = FromJson(json);
     for (const auto& [key, value] : json.items()) {
       if (key == "model" || key == "parameters") continue;
-      brdf.metadata_[key] = value.is_string() ? value.get<std::string>() : value.dump();
+      brdf.metadata_[key] = value.is_string() ? value.get<std::string>() : JsonLine(value);
     }
     return brdf;
   } catch (const Error& error) {
     Fail(path, ": ", error.what());
-  } catch (const nlohmann::json::exception& error) {
-    Fail(path, ": ", error.what());  // texts that aren't UTF-8
   }
 }
 
 std::string AnalyticBrdf::Json() const {
-  ordered_json parameters;
+  pbnbrdf::Json parameters;
   for (const auto& [name, values] : NamedValues()) {
     if (values.size() == 1) {
       parameters[name] = values[0];
@@ -62,7 +58,7 @@ std::string AnalyticBrdf::Json() const {
       parameters[name] = values;
     }
   }
-  return ordered_json{{"model", model_->name}, {"parameters", parameters}}.dump();
+  return JsonLine({{"model", model_->name}, {"parameters", parameters}});
 }
 
 }  // namespace pbnbrdf

@@ -3,14 +3,13 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "base/timer.h"
 #include "models/analytic_residual.h"
 #include "models/fit_analytic_fields.h"
@@ -178,12 +177,8 @@ class AnalyticFitter {
 };
 
 // Runs the stage from each candidate, and puts the best ones first.
-void RunAll(const AnalyticFitter& fitter, const Stage& stage, tbb::task_arena* arena,
-            std::vector<Candidate>* candidates) {
-  arena->execute([&] {
-    tbb::parallel_for(std::size_t{0}, candidates->size(),
-                      [&](std::size_t k) { fitter.Run(stage, &(*candidates)[k]); });
-  });
+void RunAll(const AnalyticFitter& fitter, const Stage& stage, std::vector<Candidate>* candidates) {
+  ParallelFor(candidates->size(), [&](std::size_t k) { fitter.Run(stage, &(*candidates)[k]); });
   std::stable_sort(
       candidates->begin(), candidates->end(),
       [](const Candidate& a, const Candidate& b) { return a.final_cost < b.final_cost; });
@@ -195,8 +190,7 @@ void RunAll(const AnalyticFitter& fitter, const Stage& stage, tbb::task_arena* a
 // Runs the starts and the best of them to the end. at_hand: candidates that skip the first stage.
 Candidate FitLobes(const AnalyticFitter& fitter, const AnalyticFitOptions& options,
                    const std::vector<std::vector<double>>& starts,
-                   std::span<const BrdfSample> samples, std::vector<Candidate> at_hand,
-                   tbb::task_arena* arena) {
+                   std::span<const BrdfSample> samples, std::vector<Candidate> at_hand) {
   std::vector<Candidate> candidates;
   for (const std::vector<double>& scalars : starts) {
     candidates.emplace_back();
@@ -204,11 +198,11 @@ Candidate FitLobes(const AnalyticFitter& fitter, const AnalyticFitOptions& optio
   }
   const double first_scale = std::max(kFirstLossScale, options.loss_scale);
   const auto first = samples.first(std::min(samples.size(), options.first_samples));
-  RunAll(fitter, {first, first_scale, kFirstIterations, 1e-4}, arena, &candidates);
+  RunAll(fitter, {first, first_scale, kFirstIterations, 1e-4}, &candidates);
   candidates.resize(std::min(candidates.size(), kMaxFinalists));
   candidates.insert(candidates.end(), at_hand.begin(), at_hand.end());
   RunAll(fitter, {samples, options.loss_scale, options.max_iterations, options.function_tolerance},
-         arena, &candidates);
+         &candidates);
   return candidates.front();
 }
 
@@ -244,9 +238,6 @@ AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
   const Timer timer;
   const int lobes = model.lobe.empty() ? 0 : options.lobes;
   const auto first = samples.first(std::min(samples.size(), options.first_samples));
-  const int max_threads = tbb::this_task_arena::max_concurrency();
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, max_threads)
-                                            : tbb::task_arena::automatic);
   std::vector<Candidate> at_hand;
   std::vector<double> scalars;
   Candidate best;
@@ -256,8 +247,9 @@ AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
       at_hand.push_back(best);
       at_hand[0].numbers = fitter.parameters().FromScalars(WithFaintLobe(model, scalars));
     }
-    best = FitLobes(fitter, options, AnalyticStarts(model, n, first, options.starts), samples,
-                    at_hand, &arena);
+    const auto starts = AnalyticStarts(model, n, first, options.starts);
+    WithThreads(options.threads,
+                [&] { best = FitLobes(fitter, options, starts, samples, at_hand); });
     scalars = fitter.parameters().ToBoundedScalars(best.numbers);
   }
   best.seconds = timer.Seconds();

@@ -5,19 +5,18 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kAlignment = 8;
 
 // `data`: where the tensors' bytes begin in `bytes`.
-Tensor ParseTensor(const std::string& place, const json& entry, const std::string& bytes,
+Tensor ParseTensor(const std::string& place, const Json& entry, const std::string& bytes,
                    std::size_t data) {
   Tensor tensor;
   std::string dtype;
@@ -26,18 +25,18 @@ Tensor ParseTensor(const std::string& place, const json& entry, const std::strin
     entry.at("dtype").get_to(dtype);
     entry.at("shape").get_to(tensor.shape);
     entry.at("data_offsets").get_to(offsets);
-  } catch (const json::exception&) {
+  } catch (const Json::exception&) {
     Fail(place, ": expected dtype, shape and data_offsets");
   }
   if (dtype != "F64" && dtype != "F32") Fail(place, ": dtype ", dtype, " is not one of F64 | F32");
   const std::size_t size = dtype == "F64" ? sizeof(double) : sizeof(float);
   const std::size_t available = bytes.size() - data;
   const std::size_t count = ElementCount(tensor.shape, available);
-  if (count == 0) Fail(place, ": shape ", json(tensor.shape).dump(), " doesn't fit the file");
+  if (count == 0) Fail(place, ": shape ", JsonLine(tensor.shape), " doesn't fit the file");
   if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > available ||
       offsets[1] - offsets[0] != count * size) {
-    Fail(place, ": data_offsets ", json(offsets).dump(), " don't fit shape ",
-         json(tensor.shape).dump(), " of ", dtype, " in ", available, " bytes of data");
+    Fail(place, ": data_offsets ", JsonLine(offsets), " don't fit shape ", JsonLine(tensor.shape),
+         " of ", dtype, " in ", available, " bytes of data");
   }
   const auto data_bytes = std::string_view(bytes).substr(data + offsets[0], count * size);
   tensor.values = dtype == "F64" ? ToDoubles<double>(data_bytes) : ToDoubles<float>(data_bytes);
@@ -47,10 +46,10 @@ Tensor ParseTensor(const std::string& place, const json& entry, const std::strin
   return tensor;
 }
 
-std::map<std::string, std::string> ParseMetadata(const std::string& path, const json& entry) {
+std::map<std::string, std::string> ParseMetadata(const std::string& path, const Json& entry) {
   try {
     return entry.get<std::map<std::string, std::string>>();
-  } catch (const json::exception&) {
+  } catch (const Json::exception&) {
     Fail(path, ": __metadata__ must map names to texts");
   }
 }
@@ -82,8 +81,7 @@ SafetensorsFile ReadSafetensors(const std::string& path) {
          " bytes, the file has ", bytes.size());
   }
   const char* header_begin = bytes.data() + kLengthBytes;
-  const json header = json::parse(header_begin, header_begin + header_size, nullptr,
-                                  /*allow_exceptions=*/false);
+  const Json header = ParseJson({header_begin, header_size});
   if (!header.is_object()) Fail(path, ": not a safetensors file: its header is not a JSON object");
   SafetensorsFile file;
   std::size_t used = 0;
@@ -104,18 +102,18 @@ SafetensorsFile ReadSafetensors(const std::string& path) {
 }
 
 std::string SafetensorsBytes(const SafetensorsFile& file) {
-  json header = json::object();
+  Json header = Json::object();
   if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
   std::string data;
   for (const auto& [name, tensor] : file.tensors) {
     const std::size_t size = tensor.values.size() * sizeof(double);
-    header[name] = {{"dtype", "F64"},
-                    {"shape", tensor.shape},
-                    {"data_offsets", {data.size(), data.size() + size}}};
+    header[name] = {{"data_offsets", {data.size(), data.size() + size}},
+                    {"dtype", "F64"},
+                    {"shape", tensor.shape}};
     data.append(reinterpret_cast<const char*>(tensor.values.data()), size);
   }
   // File names may be in it that aren't UTF-8.
-  std::string text = header.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string text = JsonLine(header);
   text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
   const std::uint64_t header_size = text.size();
   std::string bytes(kLengthBytes, '\0');

@@ -2,6 +2,7 @@
 
 #include "pbnbrdf/residuals/energy_residual.h"
 #include "problem/condensed_cost_function.h"
+#include "problem/jet_term.h"
 #include "problem/robust_loss.h"
 #include "problem/terms.h"
 

@@ -3,7 +3,7 @@
 
 #include "kernels/losses.h"
 #include "pbnbrdf/residuals/chromaticity_residual.h"
-#include "problem/sample_term.h"
+#include "problem/jet_term.h"
 
 namespace pbnbrdf {
 

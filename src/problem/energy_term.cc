@@ -1,11 +1,10 @@
 #include "problem/energy_term.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/network/mlp.h"
 
@@ -51,7 +50,7 @@ void EnergyTerm<T>::Set(double weight, std::span<const EnergyStratum> strata) {
 // of_all: else of the watched ones only.
 template <typename T>
 void EnergyTerm<T>::UpdateExcesses(const T* weights, bool of_all) {
-  tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
+  ParallelFor(strata_.size(), [&](std::size_t k) {
     Stratum& stratum = strata_[k];
     if (!of_all && !stratum.watched) return;
     const Rgb albedo = Albedo(weights, stratum);
@@ -88,7 +87,7 @@ void EnergyTerm<T>::Linearize(const T* weights, Linearization* at) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int p = shape_.num_weights();
   RowMajor jacobian = RowMajor::Zero(kChannels * active.size(), p);  // of the albedos
-  tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t k) {
+  ParallelFor(active.size(), [&](std::size_t k) {
     AlbedoGradients(weights, *active[k], jacobian.row(kChannels * k).data());
   });
   Eigen::VectorXd residuals(jacobian.rows());

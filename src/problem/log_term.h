@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pbnbrdf/residuals/log_residual.h"
-#include "problem/sample_term.h"
+#include "problem/jet_term.h"
 
 namespace pbnbrdf {
 

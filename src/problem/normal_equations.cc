@@ -1,9 +1,8 @@
 #include "problem/normal_equations.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "kernels/kernels.h"
 #include "kernels/products.h"
 
@@ -31,8 +30,8 @@ void AddAll(const AlignedVector<double>& from, AlignedVector<double>* to) {
 void MirrorUpperTriangle(int p, double* matrix) {
   constexpr int kTile = 32;
   const int tiles = (p + kTile - 1) / kTile;
-  tbb::parallel_for(0, tiles, [&](int tile) {
-    const int begin = tile * kTile, end = std::min(p, begin + kTile);
+  ParallelFor(tiles, [&](std::size_t tile) {
+    const int begin = static_cast<int>(tile) * kTile, end = std::min(p, begin + kTile);
     for (int first = 0; first < end; first += kTile) {
       for (int i = begin; i < end; ++i) {
         double* row = matrix + std::size_t{1} * i * p;
@@ -108,7 +107,7 @@ void NormalEquations<T>::Add(std::span<const NormalEquations* const> others) {
       AddAll(other->gradients_[l], &gradients_[l]);
     }
   }
-  tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
+  ParallelFor(blocks_.size(), [&](std::size_t b) {
     for (const NormalEquations* other : others) AddAll(other->blocks_[b].sums, &blocks_[b].sums);
   });
 }
@@ -122,8 +121,7 @@ void NormalEquations<T>::AddTo(double* gradient, double* hessian) const {
       for (int i = 0; i < columns; ++i) *gradient++ += from[i];
     }
   }
-  tbb::parallel_for(std::size_t{0}, blocks_.size(),
-                    [&](std::size_t b) { AddToUpperTriangle(blocks_[b], hessian); });
+  ParallelFor(blocks_.size(), [&](std::size_t b) { AddToUpperTriangle(blocks_[b], hessian); });
   MirrorUpperTriangle(shape_.num_weights(), hessian);
 }
 

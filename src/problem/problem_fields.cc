@@ -39,7 +39,7 @@ std::string PrintTerms(const std::vector<WeightedTerm>& terms) {
     text += StrCat(text.empty() ? "" : ",", term.name);
     const TermType* type = FindTermType(term.name);
     if (type != nullptr && type->default_weight == term.weight) continue;
-    text += ":" + FormatNumber(term.weight);
+    text.append(":").append(FormatNumber(term.weight));
   }
   return text;
 }

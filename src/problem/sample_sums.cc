@@ -1,10 +1,11 @@
 #include "problem/sample_sums.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "base/parallel.h"
+#include "pbnbrdf/residuals/log_residual.h"
 
 namespace pbnbrdf {
 namespace {
@@ -25,7 +26,7 @@ std::size_t PartitionCount(std::size_t batches) {
 template <typename Run>
 std::size_t ForEachPartition(std::size_t batches, Run run) {
   const std::size_t count = PartitionCount(batches);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t p) { run(p, count); });
+  ParallelFor(count, [&](std::size_t p) { run(p, count); });
   return count;
 }
 
@@ -74,7 +75,7 @@ double SampleSums<T>::Cost(const T* weights) const {
 
 template <typename T>
 double SampleSums<T>::MeanAbsLogError(const T* weights) {
-  if (!error_term_) error_term_.emplace();
+  if (!error_term_) error_term_ = FindTermType(LogResidual::kName)->make();
   error_term_->Grow(samples_, inputs_.size());
   std::vector<double> sums(kMaxPartitions, 0.0);
   ForEachPartition(inputs_.num_batches(), [&](std::size_t p, std::size_t partitions) {

@@ -3,13 +3,11 @@
 
 #include <concepts>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "pbnbrdf/problem/linearization.h"
 #include "problem/batch_pass.h"
-#include "problem/log_term.h"
 #include "problem/normal_equations.h"
 
 namespace pbnbrdf {
@@ -86,7 +84,7 @@ class SampleSums {
   EncodedBatches<T> inputs_;
   Batches all_batches_;
   bool curvature_in_double_ = false;
-  std::optional<LogTerm> error_term_;  // of MeanAbsLogError
+  std::unique_ptr<SampleTerm> error_term_;  // of MeanAbsLogError
   // One a partition.
   std::vector<std::unique_ptr<CurvatureSum<T>>> curvature_sums_;
   std::vector<std::unique_ptr<CurvatureSum<double>>> exact_curvature_sums_;

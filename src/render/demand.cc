@@ -1,12 +1,10 @@
 #include "pbnbrdf/render/demand.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "base/parallel.h"
 #include "camera.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
@@ -45,17 +43,14 @@ class DemandMeter {
         sums_(scene.materials.size()) {}
 
   // Requests are added in the same order with any number of threads, as sums depend on it.
-  void Run(tbb::task_arena* arena) {
+  void Run() {
     std::vector<std::vector<Request>> requests(kTilesPerPass);
     for (int done = 0; done < samples_; done += kSamplesPerPass) {
       const int samples = std::min(kSamplesPerPass, samples_ - done);
       for (std::size_t begin = 0; begin < tiles_.size(); begin += kTilesPerPass) {
         const std::size_t count = std::min(kTilesPerPass, tiles_.size() - begin);
-        arena->execute([&] {
-          tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-            Trace(tiles_[begin + i], done, samples, &requests[i]);
-          });
-        });
+        ParallelFor(count,
+                    [&](std::size_t i) { Trace(tiles_[begin + i], done, samples, &requests[i]); });
         materials_.ThrowIfFailed();
         for (std::size_t i = 0; i < count; ++i) Add(requests[i]);
       }
@@ -124,9 +119,8 @@ std::vector<MaterialDemand> MeasureDemand(const Scene& scene, const MaterialOpen
       .max_bounces = options.max_bounces};
   ValidateRender(render);
   Materials materials(small, open);
-  tbb::task_arena arena(ArenaThreads(options.threads));
   DemandMeter meter(small, render, &materials);
-  meter.Run(&arena);
+  WithThreads(options.threads, [&] { meter.Run(); });
   std::vector<MaterialDemand> demand;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) demand.push_back(meter.Demand(i));
   for (const Shape& shape : scene.shapes) demand[std::size_t(shape.material)].referenced = true;

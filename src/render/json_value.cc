@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/text.h"
@@ -10,24 +11,22 @@
 namespace pbnbrdf {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr int kMaxDepth = 64;          // scenes need 6; the parser's stack holds thousands
 constexpr std::size_t kMaxQuote = 60;  // characters of a value in a message of one line
 // Leaves room below the largest float, 3e38, for scales and for sums over lights.
 constexpr double kMaxColor = 1e30;
 
-std::string Quoted(const ordered_json& json) {
-  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+std::string Quoted(const Json& json) {
+  const std::string text = JsonLine(json);
   return text.size() > kMaxQuote ? text.substr(0, kMaxQuote) + "..." : text;
 }
 
 }  // namespace
 
-ordered_json ParseJson(const std::string& text) {
-  using Event = ordered_json::parse_event_t;
+JsonValue JsonValue::Parse(const std::string& text) {
+  using Event = Json::parse_event_t;
   std::vector<std::set<std::string>> keys;  // of the objects around the current place
-  const auto watch = [&](int depth, Event event, ordered_json& parsed) {
+  const auto watch = [&](int depth, Event event, Json& parsed) {
     if (depth > kMaxDepth) Fail("not a scene: nested more than ", kMaxDepth, " deep");
     if (event == Event::object_start) keys.emplace_back();
     if (event == Event::object_end) keys.pop_back();
@@ -37,8 +36,8 @@ ordered_json ParseJson(const std::string& text) {
     return true;
   };
   try {
-    return ordered_json::parse(text, watch);
-  } catch (const ordered_json::exception& error) {
+    return {std::make_shared<const Json>(Json::parse(text, watch)), ""};
+  } catch (const Json::exception& error) {
     const std::string message = error.what();  // "[json.exception.NAME.NUMBER] WHAT"
     const std::size_t end = message.find("] ");
     Fail("not JSON: ", end == std::string::npos ? message : message.substr(end + 2));
@@ -92,6 +91,14 @@ Rgb JsonValue::Color() const {
   return color;
 }
 
+JsonValue JsonValue::Child(const Json& json, std::string place) const {
+  return {std::shared_ptr<const Json>(json_, &json), std::move(place)};
+}
+
+bool JsonValue::Has(const std::string& key) const { return json_->contains(key); }
+
+bool JsonValue::IsArray() const { return json_->is_array(); }
+
 void JsonValue::RequireObject() const {
   if (!json_->is_object()) Refuse("expected an object, {...}");
 }
@@ -107,7 +114,7 @@ JsonValue JsonValue::At(const std::string& key) const {
   RequireObject();
   const auto found = json_->find(key);
   if (found == json_->end()) Refuse("has no \"", key, "\"");
-  return JsonValue(*found, place_.empty() ? key : place_ + "." + key);
+  return Child(*found, place_.empty() ? key : place_ + "." + key);
 }
 
 std::vector<std::pair<std::string, JsonValue>> JsonValue::Members() const {
@@ -121,7 +128,7 @@ std::vector<JsonValue> JsonValue::Elements() const {
   if (!json_->is_array()) Refuse("expected a list, [...]");
   std::vector<JsonValue> elements;
   for (std::size_t i = 0; i < json_->size(); ++i) {
-    elements.emplace_back((*json_)[i], StrCat(place_, "[", i, "]"));
+    elements.push_back(Child((*json_)[i], StrCat(place_, "[", i, "]")));
   }
   return elements;
 }

@@ -1,17 +1,16 @@
 // json_value.h: a value of a JSON file that knows its place there, for error messages.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/fields.h"
+#include "base/json.h"
 #include "pbnbrdf/brdf/direction.h"
 
 namespace pbnbrdf {
-
-// Throws Error if the text is not JSON, or an object has a key twice.
-nlohmann::ordered_json ParseJson(const std::string& text);
 
 // Its message begins with a place in the file.
 struct PlacedError : Error {
@@ -20,9 +19,8 @@ struct PlacedError : Error {
 
 class JsonValue {
  public:
-  // json must outlive this.
-  JsonValue(const nlohmann::ordered_json& json, std::string place)
-      : json_(&json), place_(std::move(place)) {}
+  // Throws Error if the text is not JSON, or an object has a key twice.
+  static JsonValue Parse(const std::string& text);
 
   // Throws PlacedError "place: message".
   template <typename... Parts>
@@ -52,19 +50,22 @@ class JsonValue {
 
   // Of an object.
   void CheckKeys(const std::vector<std::string>& known) const;  // refuses all others
-  bool Has(const std::string& key) const { return json_->contains(key); }
+  bool Has(const std::string& key) const;
   JsonValue At(const std::string& key) const;  // refuses an object without the key
   std::vector<std::pair<std::string, JsonValue>> Members() const;
 
   // Of an array.
-  bool IsArray() const { return json_->is_array(); }
+  bool IsArray() const;
   std::vector<JsonValue> Elements() const;
 
  private:
+  JsonValue(std::shared_ptr<const Json> json, std::string place)
+      : json_(std::move(json)), place_(std::move(place)) {}
+  JsonValue Child(const Json& json, std::string place) const;
   void RequireObject() const;
 
-  const nlohmann::ordered_json* json_;
-  std::string place_;  // "shapes[2].radius"; "" at the top
+  std::shared_ptr<const Json> json_;  // shares the whole file's
+  std::string place_;                 // "shapes[2].radius"; "" at the top
 };
 
 }  // namespace pbnbrdf

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <span>
 
 #include "camera.h"
@@ -13,12 +11,6 @@
 #include "reflection.h"
 
 namespace pbnbrdf {
-
-// The concurrency of a tbb::task_arena. threads: an option, 0 for as many as there are.
-inline int ArenaThreads(int threads) {
-  const int max = tbb::this_task_arena::max_concurrency();
-  return threads > 0 ? std::min(threads, max) : max;
-}
 
 // The samples first, ..., first + count - 1 of each pixel of the blocks.
 struct SampleRange {

@@ -1,7 +1,6 @@
 #include "pbnbrdf/render/render.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <mutex>
 
+#include "base/parallel.h"
 #include "camera.h"
 #include "path_tracer.h"
 #include "pbnbrdf/base/error.h"
@@ -38,15 +38,14 @@ class Renderer {
     }
   }
 
-  void Run(tbb::task_arena* arena) {
+  void Run() {
     // The first pass takes one sample of each pixel, so that an early stop leaves a whole image.
     for (int done = 0, count = 1; done < options_.samples_per_pixel && !Finished(); done += count) {
       if (done > 0) count = std::min(kSamplesPerPass, options_.samples_per_pixel - done);
-      arena->execute([&] {
-        tbb::parallel_for(
-            std::size_t{0}, tiles_.size(),
-            [&](std::size_t i) { TraceTile(done, count, &tiles_[i]); }, tbb::simple_partitioner());
-      });
+      // Tiles take times that differ much, so that each is a task of its own.
+      tbb::parallel_for(
+          std::size_t{0}, tiles_.size(), [&](std::size_t i) { TraceTile(done, count, &tiles_[i]); },
+          tbb::simple_partitioner());
       materials_.ThrowIfFailed();
     }
   }
@@ -140,11 +139,10 @@ void ValidateRender(const RenderOptions& options) {
 Rendering Render(const Scene& scene, const MaterialOpener& open, const RenderOptions& options) {
   ValidateRender(options);
   const Timer timer;
-  tbb::task_arena arena(ArenaThreads(options.threads));
   Materials materials(scene, open);
-  if (!options.skip) arena.execute([&] { materials.OpenAll(); });
+  if (!options.skip) WithThreads(options.threads, [&] { materials.OpenAll(); });
   Renderer renderer(scene, options, &materials);
-  renderer.Run(&arena);
+  WithThreads(options.threads, [&] { renderer.Run(); });
   Rendering rendering = renderer.Result();
   rendering.summary.seconds = timer.Seconds();
   return rendering;

@@ -275,10 +275,7 @@ class SceneReader {
 
 Scene ReadScene(const std::string& path, const SceneChanges& changes) {
   const std::string text = ReadFile(path, kMaxFileBytes);
-  return About(path, [&] {
-    const nlohmann::ordered_json json = ParseJson(text);
-    return SceneReader(path, changes).Read(JsonValue(json, ""));
-  });
+  return About(path, [&] { return SceneReader(path, changes).Read(JsonValue::Parse(text)); });
 }
 
 }  // namespace pbnbrdf

@@ -1,12 +1,12 @@
 #include "solve/energy_correction.h"
 
-#include <tbb/parallel_for.h>
-
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel.h"
+#include "kernels/cholesky.h"
 #include "network/batched_mlp.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -116,22 +116,28 @@ VectorXd AlbedoGradient(const Rows& rows, const std::vector<AlbedoNode>& nodes) 
 class TypicalChange {
  public:
   TypicalChange(const NetworkShape& shape, const std::vector<double>& weights)
-      : features_(RowsAt(shape, weights, TypicalPairs(IsIsotropic(shape.encoding())), 0).features) {
-    MatrixXd squares = features_.transpose() * features_;
-    squares.diagonal().array() += kRidge * squares.trace() / static_cast<double>(squares.rows());
-    squares_.compute(squares);
+      : features_(RowsAt(shape, weights, TypicalPairs(IsIsotropic(shape.encoding())), 0).features),
+        squares_(static_cast<int>(features_.cols())) {
+    const double ridge = kRidge * features_.squaredNorm() / squares_.size();
+    for (int i = 0; i < squares_.size(); ++i) {
+      for (int j = 0; j <= i; ++j) squares_.row(i)[j] = features_.col(i).dot(features_.col(j));
+      squares_.row(i)[i] += ridge;
+    }
+    squares_.Factor();  // always positive definite, with the ridge
   }
 
   // The direction that changes log(1 + f) least, in the mean square, for what it gains along the gradient.
   VectorXd Cheapest(const VectorXd& gradient) const {
-    return squares_.solve(gradient / gradient.norm());
+    VectorXd direction = gradient / gradient.norm();
+    squares_.Solve(direction.data());
+    return direction;
   }
 
   double MeanAbs(const VectorXd& change) const { return (features_ * change).cwiseAbs().mean(); }
 
  private:
   MatrixXd features_;
-  Eigen::LDLT<MatrixXd> squares_;
+  Cholesky squares_;  // of features' * features
 };
 
 class Corrector {
@@ -160,10 +166,10 @@ class Corrector {
   }
 
  private:
-  // A direction whose albedo may matter, as the profile has it and by a quadrature of fewer nodes.
+  // The directions whose albedos may matter, as the profile has them and by a quadrature of fewer nodes.
   struct Watched {
-    IncidentAlbedo at;
-    Rgb own;
+    std::vector<IncidentAlbedo> at;
+    std::vector<Rgb> own;
   };
 
   std::vector<IncidentAlbedo> Profile(bool exactly) const {
@@ -174,16 +180,17 @@ class Corrector {
 
   // Lowers the largest albedo again and again. In between only the large ones are measured anew.
   void LowerAll(const std::vector<IncidentAlbedo>& profile, double bound, int number) {
-    std::vector<Watched> watched;
+    Watched watched;
     for (const IncidentAlbedo& at : profile) {
-      if (Largest(at.albedo) > bound - kWatched) watched.push_back({at, {}});
+      if (Largest(at.albedo) > bound - kWatched) watched.at.push_back(at);
     }
+    watched.own.resize(watched.at.size());
     Measure(&watched, /*anew=*/false);
     const bool locally = number == 0 || (number < kLocalRounds && has_time_());
     for (int step = 0; step < kMaxSteps; ++step) {
       bool lowered = false;
       for (int c = 0; c < shape_.num_outputs(); ++c) {
-        lowered |= LowerLargest(watched, c, bound, number, locally && step < kLocalSteps);
+        lowered |= LowerLargest(watched.at, c, bound, number, locally && step < kLocalSteps);
       }
       if (!lowered) return;
       Measure(&watched, /*anew=*/true);
@@ -191,24 +198,21 @@ class Corrector {
   }
 
   // By the quadrature of fewer nodes; anew: what has changed by it is applied to the albedos.
-  void Measure(std::vector<Watched>* watched, bool anew) const {
+  void Measure(Watched* watched, bool anew) const {
     const std::unique_ptr<Brdf> network = NeuralBrdf(shape_, *weights_).SinglePrecision();
-    tbb::parallel_for(std::size_t{0}, watched->size(), [&](std::size_t k) {
-      Watched& w = (*watched)[k];
-      const Vec3 wi = FromSpherical(w.at.theta_i, w.at.phi_i);
+    ParallelFor(watched->at.size(), [&](std::size_t k) {
+      IncidentAlbedo& at = watched->at[k];
+      const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
       const Rgb own = DirectionalAlbedo(*network, wi, quadrature_);
-      for (int c = 0; c < 3 && anew; ++c) w.at.albedo[c] *= own[c] / w.own[c];
-      w.own = own;
+      for (int c = 0; c < 3 && anew; ++c) at.albedo[c] *= own[c] / watched->own[k][c];
+      watched->own[k] = own;
     });
   }
 
   // false if it isn't above the bound.
-  bool LowerLargest(const std::vector<Watched>& watched, int channel, double bound, int number,
-                    bool locally) {
-    const IncidentAlbedo& there =
-        std::max_element(watched.begin(), watched.end(), [channel](const auto& a, const auto& b) {
-          return a.at.albedo[channel] < b.at.albedo[channel];
-        })->at;
+  bool LowerLargest(const std::vector<IncidentAlbedo>& watched, int channel, double bound,
+                    int number, bool locally) {
+    const IncidentAlbedo& there = LargestIn(watched, channel);
     const double albedo = there.albedo[channel];
     if (!(albedo > bound)) return false;
     const std::vector<AlbedoNode> nodes =

@@ -7,12 +7,11 @@
 //
 // [1] R. Hettich, K. Kortanek. Semi-Infinite Programming: Theory, Methods, and Applications. SIAM
 //     Review 35(3), 1993: exchange methods.
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "solve/energy_correction.h"
 #include "solve/training.h"
@@ -33,13 +32,6 @@ constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no fi
 constexpr double kMinCost = 1e-7;           // of the other terms, for the weight of this one
 constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
 constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
-
-const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel) {
-  return *std::max_element(profile.begin(), profile.end(),
-                           [channel](const IncidentAlbedo& a, const IncidentAlbedo& b) {
-                             return a.albedo[channel] < b.albedo[channel];
-                           });
-}
 
 class EnergyConstraints {
  public:
@@ -78,7 +70,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
   }
   // A limit makes up for the error of the energy term's own quadrature, which is coarser.
   const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
-  tbb::parallel_for(std::size_t{0}, strata_.size(), [&](std::size_t k) {
+  ParallelFor(strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
     const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
     const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));

@@ -1,10 +1,11 @@
 #include "pbnbrdf/solve/fit.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "base/parallel.h"
 #include "pbnbrdf/base/error.h"
 #include "solve/fit_fields.h"
 #include "solve/solver.h"
@@ -81,9 +82,9 @@ Fit FitBrdf(const Brdf& material, const FitProblem& problem, const FitOptions& o
   const FitProblem settled = problem.For(material);
   ValidateFit(settled, options);
   CheckMaterial(material, settled);
-  const int max_threads = tbb::this_task_arena::max_concurrency();
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, max_threads) : max_threads);
-  return arena.execute([&] { return Solve(material, settled, options); });
+  std::optional<Fit> fit;
+  WithThreads(options.threads, [&] { fit = Solve(material, settled, options); });
+  return *std::move(fit);
 }
 
 }  // namespace pbnbrdf

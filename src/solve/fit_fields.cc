@@ -32,8 +32,10 @@ Fields OptionFields(FitOptions* options) {
       SolversHelp()));
   fields.Add(Choice("precision", &options->precision, kPrecisions,
                     "floating-point precision of the network"));
-  fields.Add(Switch("acceleration", &options->acceleration,
-                    "lm: bend each step along the residuals (geodesic acceleration)"));
+  fields.Add(
+      Switch("acceleration", &options->acceleration,
+             "lm: bend each step by the second derivatives of the residuals along it (geodesic "
+             "acceleration)"));
   fields.Add(Integer("first_samples", &schedule->first_samples, AtLeast(1),
                      "training samples to start with; --samples or more: all of them"));
   fields.Add(
@@ -42,7 +44,7 @@ Fields OptionFields(FitOptions* options) {
   fields.Add(Integer("starts", &schedule->starts, AtLeast(1),
                      "number of random initial weights to try; the fit goes on with the best"));
   fields.Add(Integer("curvature_samples", &schedule->curvature_samples, AtLeast(1),
-                     "lm: samples that J'J is computed from, others in each iteration"));
+                     "lm: samples that J'J is summed over; each iteration takes others"));
   fields.AddCommon(Integer(
       "max_iterations", &schedule->max_iterations, AtLeast(0),
       "maximum number of iterations (adam: epochs), and as many again with the energy term"));
@@ -52,7 +54,7 @@ Fields OptionFields(FitOptions* options) {
                     "stop when an iteration lowers the cost by a smaller part than this"));
   fields.Add(Switch("certify_energy", &options->certify_energy,
                     "with the energy term: make sure that no directional albedo is above 1, if "
-                    "need be by lowering f where it is made"));
+                    "need be by lowering f where energy is made"));
   fields.Add(Integer("batch", &options->adam.batch, AtLeast(1), "adam: samples in a step"));
   fields.Add(Number("learning_rate", &options->adam.learning_rate, Above(0.0), "adam: step size"));
   fields.Add(Integer("energy_angles", &options->adam.energy_angles, Between(1, 1024),

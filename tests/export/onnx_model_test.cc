@@ -26,10 +26,10 @@ TEST(ProtobufMessage, LongFieldsAndNumbersTakeMoreBytes) {
   EXPECT_EQ(message.bytes(), std::string("\xa0\x01\x00", 3));
   ProtobufMessage largest;
   largest.Add(1, ~std::uint64_t{0});
-  EXPECT_EQ(largest.bytes(), "\x08" + std::string(9, '\xff') + "\x01");
+  EXPECT_EQ(largest.bytes(), StrCat("\x08", std::string(9, '\xff'), "\x01"));
   ProtobufMessage text;
   text.Add(1, std::string(300, 'x'));
-  EXPECT_EQ(text.bytes(), "\x0a\xac\x02" + std::string(300, 'x'));
+  EXPECT_EQ(text.bytes(), StrCat("\x0a\xac\x02", std::string(300, 'x')));
 }
 
 TEST(OnnxModel, WeightsBeyondFloatAreRefused) {

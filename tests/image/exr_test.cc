@@ -109,7 +109,7 @@ template <typename T>
 std::vector<char> Bytes(const std::vector<float>& values) {
   std::vector<char> bytes(values.size() * sizeof(T));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const T value(values[i]);
+    const auto value = static_cast<T>(values[i]);
     std::memcpy(&bytes[i * sizeof(T)], &value, sizeof(T));
   }
   return bytes;

@@ -91,4 +91,7 @@ std::vector<IncidentAlbedo> AlbedoProfile(const Brdf& brdf, const AlbedoGrid& gr
 // The largest of each channel, at least 0.
 Rgb LargestAlbedos(const std::vector<IncidentAlbedo>& profile);
 
+// Where a channel's albedo is largest; the first such direction. The profile mustn't be empty.
+const IncidentAlbedo& LargestIn(const std::vector<IncidentAlbedo>& profile, int channel);
+
 }  // namespace pbnbrdf
