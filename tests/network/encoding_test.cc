@@ -167,14 +167,14 @@ TEST(Encoding, JetsHaveTheNumericDerivatives) {
   }
 }
 
-TEST(Encoding, OneOfEachKindIsPreferred) {
-  for (bool isotropic : {true, false}) {
+TEST(Encoding, EachKindOfMaterialHasOneDefault) {
+  for (MaterialKind kind :
+       {MaterialKind::kTable, MaterialKind::kScattered, MaterialKind::kAnisotropic}) {
     int count = 0;
-    for (const auto& [name, encoding] : kEncodings) {
-      count += TraitsOf(encoding).preferred && IsIsotropic(encoding) == isotropic;
-    }
+    for (const auto& [name, encoding] : kEncodings) count += TraitsOf(encoding).default_of == kind;
     EXPECT_EQ(count, 1);
-    EXPECT_EQ(IsIsotropic(PreferredEncoding(isotropic)), isotropic);
+    EXPECT_EQ(TraitsOf(DefaultEncoding(kind)).default_of, kind);
+    EXPECT_EQ(IsIsotropic(DefaultEncoding(kind)), kind != MaterialKind::kAnisotropic);
   }
 }
 

@@ -2,8 +2,10 @@
 // expressions-inl.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 
 #include "pbnbrdf/base/names.h"
 #include "pbnbrdf/brdf/brdf.h"
@@ -28,10 +30,17 @@ inline constexpr auto kEncodings = std::to_array<std::pair<std::string_view, Enc
 #undef PBNBRDF_NAME
 });
 
+// Materials by what they ask of an encoding.
+enum class MaterialKind {
+  kTable,  // isotropic, with values at the rows of a MERL table; a formula is fitted as if it had them
+  kScattered,  // isotropic, measured at directions of its own: the merl encoding may ripple between rows
+  kAnisotropic,
+};
+
 struct EncodingTraits {
   bool isotropic = false;
   bool reciprocal = false;
-  bool preferred = false;
+  std::optional<MaterialKind> default_of = {};  // the materials that get it if none is asked for
 };
 
 constexpr EncodingTraits TraitsOf(Encoding encoding) {
@@ -50,20 +59,18 @@ constexpr bool IsIsotropic(Encoding encoding) { return TraitsOf(encoding).isotro
 // exchanged.
 constexpr bool IsReciprocal(Encoding encoding) { return TraitsOf(encoding).reciprocal; }
 
-// The default for materials that are isotropic, and for those that aren't.
-constexpr Encoding PreferredEncoding(bool isotropic) {
-  for (const auto& [name, encoding] : kEncodings) {
-    const EncodingTraits traits = TraitsOf(encoding);
-    if (traits.preferred && traits.isotropic == isotropic) return encoding;
-  }
-  return kEncodings.front().second;
+// The default for a kind of material; there is one for each.
+constexpr Encoding DefaultEncoding(MaterialKind kind) {
+  return std::find_if(
+             kEncodings.begin(), kEncodings.end() - 1,
+             [kind](const auto& named) { return TraitsOf(named.second).default_of == kind; })
+      ->second;
 }
 
-// Between the rows of a table the merl encoding may ripple: it is for materials that have such rows, and for
-// formulas, which are fitted as if they had.
 inline Encoding EncodingFor(const Brdf& material) {
-  if (material.IsIsotropic() && material.HasOwnDirections()) return Encoding::kElevations;
-  return PreferredEncoding(material.IsIsotropic());
+  if (!material.IsIsotropic()) return DefaultEncoding(MaterialKind::kAnisotropic);
+  return DefaultEncoding(material.HasOwnDirections() ? MaterialKind::kScattered
+                                                     : MaterialKind::kTable);
 }
 
 // On any V of brdf/operations.h.

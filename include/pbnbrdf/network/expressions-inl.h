@@ -96,12 +96,15 @@ V ClampedReflectance(const V& z) {
 // programs, and the tests of what holds for every encoding.
 #ifndef PBNBRDF_ENCODINGS
 // clang-format off
-#define PBNBRDF_ENCODINGS(ENCODING)                                                                 \
-  ENCODING(kCartesian, "cartesian", CartesianInputs, .isotropic = true)                             \
-  ENCODING(kReciprocal, "reciprocal", ReciprocalInputs, .isotropic = true, .reciprocal = true)      \
-  ENCODING(kMultiscale, "multiscale", MultiscaleInputs, .isotropic = true, .reciprocal = true)      \
-  ENCODING(kElevations, "elevations", ElevationsInputs, .isotropic = true, .reciprocal = true)      \
-  ENCODING(kMerl, "merl", MerlInputs, .isotropic = true, .reciprocal = true, .preferred = true)     \
-  ENCODING(kAnisotropic, "anisotropic", AnisotropicInputs, .reciprocal = true, .preferred = true)
+#define PBNBRDF_ENCODINGS(ENCODING)                                                            \
+  ENCODING(kCartesian, "cartesian", CartesianInputs, .isotropic = true)                        \
+  ENCODING(kReciprocal, "reciprocal", ReciprocalInputs, .isotropic = true, .reciprocal = true) \
+  ENCODING(kMultiscale, "multiscale", MultiscaleInputs, .isotropic = true, .reciprocal = true) \
+  ENCODING(kElevations, "elevations", ElevationsInputs, .isotropic = true, .reciprocal = true, \
+           .default_of = MaterialKind::kScattered)                                             \
+  ENCODING(kMerl, "merl", MerlInputs, .isotropic = true, .reciprocal = true,                   \
+           .default_of = MaterialKind::kTable)                                                 \
+  ENCODING(kAnisotropic, "anisotropic", AnisotropicInputs, .reciprocal = true,                 \
+           .default_of = MaterialKind::kAnisotropic)
 // clang-format on
 #endif
