@@ -1,7 +1,9 @@
 // pbnbrdf export
 #include "base/about.h"
+#include "base/text.h"
 #include "command_line.h"
 #include "material_options.h"
+#include "pbnbrdf/base/names.h"
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/open_brdf.h"
@@ -9,12 +11,37 @@
 namespace pbnbrdf::cli {
 namespace {
 
+constexpr std::size_t kHelpColumn = 9;  // behind the longest name
+
 struct ExportOptions {
   std::string fit;
   MaterialOptions material;
   std::string format;
   std::string out, name;
 };
+
+// "npy | h5 | ..."
+std::string FormatNames() {
+  std::string names;
+  for (const ExportFormat& format : ExportFormats()) {
+    names += StrCat(names.empty() ? "" : " | ", format.name);
+  }
+  return names;
+}
+
+// A format's name and help a line, further lines indented.
+std::string FormatsHelp() {
+  std::string text;
+  for (const ExportFormat& format : ExportFormats()) {
+    std::string name(format.name);
+    for (const std::string& line : Split(format.help, '\n')) {
+      name.resize(kHelpColumn, ' ');
+      text += StrCat("  ", name, line, "\n");
+      name.clear();
+    }
+  }
+  return text;
+}
 
 Fields ExportFields(ExportOptions* options) {
   Fields fields;
@@ -26,22 +53,22 @@ Fields ExportFields(ExportOptions* options) {
   fields.AddRequired(Custom(
       "format",
       [options](std::string_view text) {
-        ParseName(kExportFormats, "format", text);
-        options->format = text;
+        options->format = FindNamed(ExportFormats(), "format=", text).name;
       },
-      [options] { return options->format; }, [] {}, JoinNames(kExportFormats) + ", see below"));
+      [options] { return options->format; }, [] {}, FormatNames() + ", see below"));
   fields.AddRequired(Text("out", &options->out, "file to write; - is standard output"));
-  fields.AddCommon(Text("name", &options->name,
-                        "c and glsl: the function is called NAME_eval; as the file, if not given"));
+  fields.AddCommon(
+      Text("name", &options->name,
+           "c and glsl: the function is called NAME_eval; by default, NAME is that of the file"));
   return fields;
 }
 
 // Throws UsageError unless either a network is given or, for a MERL table, any source.
-void CheckSource(const ExportOptions& options, ExportFormat format) {
+void CheckSource(const ExportOptions& options) {
   const bool has_fit = !options.fit.empty(), has_material = !options.material.source.empty();
   if (has_fit && has_material) throw UsageError("--fit and --material: give one of them only");
   if (has_fit) return;
-  if (format != ExportFormat::kMerl) {
+  if (options.format != "merl") {
     throw UsageError(has_material ? StrCat("--format=", options.format,
                                            " exports networks only: give one with --fit")
                                   : "--fit is required");
@@ -49,18 +76,17 @@ void CheckSource(const ExportOptions& options, ExportFormat format) {
   if (!has_material) throw UsageError("--fit or --material is required");
 }
 
-std::vector<FileContent> NetworkFiles(const ExportOptions& options, ExportFormat format) {
+std::vector<FileContent> NetworkFiles(const ExportOptions& options) {
   const NeuralBrdf network = OpenNetwork(options.fit);
   return About(StrCat(options.fit, ", exported as ", options.format),
-               [&] { return ExportedFiles(network, format, options.out, options.name); });
+               [&] { return ExportedFiles(network, options.format, options.out, options.name); });
 }
 
 int RunExport(const ExportOptions& options, const Arguments&) {
-  const ExportFormat format = ParseName(kExportFormats, "format", options.format);
-  CheckSource(options, format);
+  CheckSource(options);
   CheckOutputs({{"out", options.out}});
   if (!options.fit.empty()) {
-    WriteFiles(NetworkFiles(options, format));
+    WriteFiles(NetworkFiles(options));
     return 0;
   }
   const std::unique_ptr<Brdf> material = options.material.Open();
@@ -78,25 +104,15 @@ Command ExportCommand() {
   pbnbrdf export --fit=gold.safetensors --format=mitsuba --out=gold.py
   pbnbrdf export --material=builtin:satin-gold --format=merl --out=gold.binary
 )",
-      .notes = StrCat(R"(Formats:
-  npy      BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the network must
-           have relu units, two hidden layers and the cartesian encoding
-  h5       FILE.h5, a Keras file as NBRDF's are; the network must have relu units and the cartesian
-           encoding
-  merl     FILE.binary, a table in the format of the MERL BRDF database, of an isotropic network
-           (--fit) or any isotropic source of reflectance (--material)
-  csv      theta_i,phi_i,theta_o,phi_o (radians) and r,g,b on a grid of Rusinkiewicz angles that is
-           dense near the mirror direction
-  c        a C99 header with void NAME_eval(const float wi[3], const float wo[3], float rgb[3]); it
-           needs <math.h> only
-  glsl     vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later
-  mitsuba  FILE.py, which registers the BSDF "pbnbrdf" in Mitsuba 3, and FILE_weights.safetensors
-  onnx     a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32
-wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear RGB in
+      .notes = StrCat(
+          R"(Formats:
+)",
+          FormatsHelp(),
+          R"(wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear RGB in
 1/sr, without the cosine (Mitsuba's own functions include it).
 
 )",
-                      kSourceNotes)}
+          kSourceNotes)}
       .With(ExportFields, RunExport);
 }
 

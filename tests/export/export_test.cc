@@ -25,10 +25,8 @@ std::vector<double> AsFloats(std::vector<double> weights) {
 TEST(Export, NbrdfFilesAreReadBack) {
   TemporaryFolder folder;
   const NeuralBrdf network = Relu();
-  for (const auto& [format, name] : {std::pair{ExportFormat::kH5, "a.h5"},
-                                     {ExportFormat::kH5, "a.hdf5"},
-                                     {ExportFormat::kNpy, "a_fc1.npy"},
-                                     {ExportFormat::kNpy, "fc1.npy"}}) {
+  for (const auto& [format, name] :
+       {std::pair{"h5", "a.h5"}, {"h5", "a.hdf5"}, {"npy", "a_fc1.npy"}, {"npy", "fc1.npy"}}) {
     Export(network, format, folder / name);
     const NeuralBrdf back = OpenNetwork(folder / name);
     EXPECT_EQ(back.shape().Description(), "6-7-5-3 relu");
@@ -37,14 +35,14 @@ TEST(Export, NbrdfFilesAreReadBack) {
   }
   EXPECT_EQ(folder.file_count(), 2u + 2 * 6);
   const NeuralBrdf deep = Relu({4, 4, 4, 4});
-  Export(deep, ExportFormat::kH5, folder / "deep.h5");
+  Export(deep, "h5", folder / "deep.h5");
   EXPECT_EQ(OpenNetwork(folder / "deep.h5").weights(), AsFloats(deep.weights()));
 }
 
 TEST(Export, OneChannelBecomesThree) {
   TemporaryFolder folder;
   const NeuralBrdf one = RandomNetwork(Encoding::kCartesian, Activation::kRelu, {7, 5}, 4, 1);
-  Export(one, ExportFormat::kH5, folder / "a.h5");
+  Export(one, "h5", folder / "a.h5");
   const NeuralBrdf back = OpenNetwork(folder / "a.h5");
   EXPECT_EQ(back.NumChannels(), 3);
   const std::vector<Rgb> expected = LibraryValues(one, HardPairs());
@@ -62,8 +60,7 @@ TEST(Export, PublishedNetworksComeOutAsTheyWentIn) {
     GTEST_SKIP() << "needs the program unzip";
   }
   const std::string base = folder / "merl_nbrdf/npy/blue-acrylic_";
-  const auto files =
-      ExportedFiles(OpenNetwork(base + "fc1.npy"), ExportFormat::kNpy, base + "fc1.npy");
+  const auto files = ExportedFiles(OpenNetwork(base + "fc1.npy"), "npy", base + "fc1.npy");
   ASSERT_EQ(files.size(), 6u);
   for (const FileContent& file : files) {
     EXPECT_EQ(file.content, ReadFile(file.path, 1 << 20)) << file.path;  // to the last byte
@@ -73,32 +70,33 @@ TEST(Export, PublishedNetworksComeOutAsTheyWentIn) {
 TEST(Export, MerlIsWhatTabulateWrites) {
   TemporaryFolder folder;
   const NeuralBrdf network = Merl();
-  Export(network, ExportFormat::kMerl, folder / "a.binary");
+  Export(network, "merl", folder / "a.binary");
   MerlBrdf::Tabulate(network).Write(folder / "b.binary");
   EXPECT_EQ(ReadFile(folder / "a.binary", 1 << 26), ReadFile(folder / "b.binary", 1 << 26));
   EXPECT_EQ(MerlBrdf::Read(folder / "a.binary").valid_bins(), 1111326u);
 }
 
 TEST(Export, TheSameNetworkGivesTheSameBytes) {
-  for (const auto& [name, format] : kExportFormats) {
-    const std::string path = format == ExportFormat::kNpy       ? "fc1.npy"
-                             : format == ExportFormat::kH5      ? "a.h5"
-                             : format == ExportFormat::kMitsuba ? "a.py"
-                                                                : "a";
+  for (const ExportFormat& exported : ExportFormats()) {
+    const std::string_view format = exported.name;
+    const std::string path = format == "npy"       ? "fc1.npy"
+                             : format == "h5"      ? "a.h5"
+                             : format == "mitsuba" ? "a.py"
+                                                   : "a";
     const auto once = ExportedFiles(Relu(), format, path),
                twice = ExportedFiles(Relu(), format, path);
     ASSERT_EQ(once.size(), twice.size());
     ASSERT_GE(once.size(), 1u);
     for (std::size_t n = 0; n < once.size(); ++n) {
       EXPECT_EQ(once[n].path, twice[n].path);
-      EXPECT_TRUE(once[n].content == twice[n].content) << name;
+      EXPECT_TRUE(once[n].content == twice[n].content) << format;
     }
   }
 }
 
 TEST(Export, FunctionsAreNamedAsTheFileOrAsAsked) {
   const auto text = [](const std::string& path, const std::string& name) {
-    return ExportedFiles(Merl(), ExportFormat::kC, path, name)[0].content;
+    return ExportedFiles(Merl(), "c", path, name)[0].content;
   };
   EXPECT_THAT(text("x/gold-paint.v2.h", ""), HasSubstr("static inline void gold_paint_eval("));
   EXPECT_THAT(text("x/gold.h", "paint"), HasSubstr("static inline void paint_eval("));
@@ -106,7 +104,7 @@ TEST(Export, FunctionsAreNamedAsTheFileOrAsAsked) {
 }
 
 TEST(Export, MitsubaGetsItsWeightsBeside) {
-  const auto files = ExportedFiles(Merl(), ExportFormat::kMitsuba, "x/gold \"2\".py");
+  const auto files = ExportedFiles(Merl(), "mitsuba", "x/gold \"2\".py");
   ASSERT_EQ(files.size(), 2u);
   EXPECT_EQ(files[0].path, "x/gold \"2\"_weights.safetensors");
   EXPECT_EQ(files[0].content, Merl().Serialized());
@@ -117,11 +115,12 @@ TEST(Export, MitsubaGetsItsWeightsBeside) {
 }
 
 TEST(Export, WhatAFormatCannotHoldIsSaid) {
-  const auto error = [](const NeuralBrdf& network, ExportFormat format, const std::string& path) {
+  const auto error = [](const NeuralBrdf& network, std::string_view format,
+                        const std::string& path) {
     return ErrorOf([&] { ExportedFiles(network, format, path); });
   };
-  for (ExportFormat format : {ExportFormat::kNpy, ExportFormat::kH5}) {
-    const std::string path = format == ExportFormat::kNpy ? "fc1.npy" : "a.h5";
+  for (std::string_view format : {"npy", "h5"}) {
+    const std::string path = format == "npy" ? "fc1.npy" : "a.h5";
     EXPECT_EQ(error(Merl(), format, path),
               "an NBRDF network has relu units and the cartesian encoding, this one is tanh, merl; "
               "fit with --encoding=cartesian --activation=relu");
@@ -130,18 +129,15 @@ TEST(Export, WhatAFormatCannotHoldIsSaid) {
     EXPECT_EQ(error(NeuralBrdf(Relu().shape(), weights), format, path),
               "weight -1e+39 is beyond float32");
   }
-  EXPECT_EQ(error(Relu({4}), ExportFormat::kNpy, "fc1.npy"),
+  EXPECT_EQ(error(Relu({4}), "npy", "fc1.npy"),
             "the NumPy files hold 3 layers, a 6-4-3 relu network has 2");
-  EXPECT_THAT(error(Relu(), ExportFormat::kNpy, "a.npy"),
-              StartsWith("a.npy: name the first layer's"));
-  EXPECT_THAT(error(Relu(), ExportFormat::kNpy, "a.h5"),
-              StartsWith("a.h5: NumPy files are named by"));
-  EXPECT_THAT(error(Relu(), ExportFormat::kH5, "fc1.npy"), HasSubstr("ends with .h5 or .hdf5"));
-  EXPECT_THAT(error(Merl(), ExportFormat::kMitsuba, "gold"),
-              HasSubstr("gold: a Mitsuba plugin's name"));
-  EXPECT_THAT(error(RandomNetwork(Encoding::kAnisotropic, Activation::kTanh, {4}, 1),
-                    ExportFormat::kMerl, "a.binary"),
-              HasSubstr("a MERL table has no phi_h"));
+  EXPECT_THAT(error(Relu(), "npy", "a.npy"), StartsWith("a.npy: name the first layer's"));
+  EXPECT_THAT(error(Relu(), "npy", "a.h5"), StartsWith("a.h5: NumPy files are named by"));
+  EXPECT_THAT(error(Relu(), "h5", "fc1.npy"), HasSubstr("ends with .h5 or .hdf5"));
+  EXPECT_THAT(error(Merl(), "mitsuba", "gold"), HasSubstr("gold: a Mitsuba plugin's name"));
+  EXPECT_THAT(
+      error(RandomNetwork(Encoding::kAnisotropic, Activation::kTanh, {4}, 1), "merl", "a.binary"),
+      HasSubstr("a MERL table has no phi_h"));
 }
 
 }  // namespace
