@@ -33,8 +33,8 @@ class Brdf {
   // Sizes must agree.
   void Evaluate(std::span<const DirectionPair> pairs, std::span<Rgb> values) const;
 
-  // As Evaluate, but whatever the source itself says: below the horizon, where a network goes on (eqs. 8
-  // and 9 of the paper are taken over the whole domain of angles), and negative measurements.
+  // As Evaluate, but not clipped: values below the horizon, where a network goes on (eqs. 8 and 9 of the
+  // paper are taken over the whole domain of angles), and negative measurements are what the source says.
   virtual void EvaluateUnclipped(std::span<const DirectionPair> pairs,
                                  std::span<Rgb> values) const = 0;
 
@@ -66,7 +66,7 @@ class Brdf {
   // As if IncidentAngles()[index], neither the first nor the last one, had not been measured; else null.
   virtual std::unique_ptr<Brdf> WithoutIncidentAngle(std::size_t) const { return nullptr; }
 
-  // Whether f was measured at directions that have nothing to do with the rows of a MERL table.
+  // Whether f was measured at directions of its own, which aren't the rows of a MERL table.
   virtual bool HasOwnDirections() const { return false; }
 
   // Whether f(wi, wo) = f(wo, wi) always, but for rounding.

@@ -9,7 +9,7 @@
 namespace pbnbrdf {
 
 struct EnergyStratum {
-  Vec3 wi;                      // that stands for the stratum
+  Vec3 wi;                      // the direction that stands for the stratum
   double solid_angle;           // > 0, sr
   Rgb limit = {1.0, 1.0, 1.0};  // the largest directional albedo that costs nothing
 };

@@ -29,7 +29,7 @@ namespace pbnbrdf {
 // Uniform random weights.
 enum class Initialization {
   kGlorot,  // Glorot and Bengio 2010; the last layer's biases are the mean of log(1 + f)
-  kNbrdf,   // NBRDF's: within +-0.05, biases 0; what Adam gets furthest from
+  kNbrdf,   // NBRDF's: within +-0.05, biases 0; Adam gets furthest from this start
 };
 
 inline constexpr NameTable<Initialization, 2> kInitializations = {
@@ -49,7 +49,7 @@ struct NetworkOptions {
 enum class Loss {
   kL2,
   kSoftL1,
-  kAbsolute,  // of first-order solvers only
+  kAbsolute,  // for first-order solvers only
 };
 
 inline constexpr NameTable<Loss, 3> kLosses = {
@@ -76,11 +76,11 @@ struct TermOptions {
   int energy_phi = 48;
   bool energy_skip = true;  // to leave out strata far below 1 (energy_term.h)
 
-  // 0 of a term that is absent.
+  // 0 if the term is absent.
   double Weight(std::string_view name) const;
   double EnergyWeight() const { return Weight("energy"); }
 
-  // 0 removes the term.
+  // Adds the term if it is absent; a weight of 0 removes it.
   void SetWeight(std::string_view name, double weight);
 };
 

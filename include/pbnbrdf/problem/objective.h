@@ -15,7 +15,7 @@ namespace pbnbrdf {
 
 class EncodedSamples;
 
-// Of the network's passes; residuals, their derivatives and all long sums are always double.
+// The precision of the network's passes. Residuals, their derivatives and all long sums are always double.
 enum class Precision { kSingle, kDouble };
 
 inline constexpr NameTable<Precision, 2> kPrecisions = {
@@ -33,13 +33,13 @@ class Objective {
 
   virtual const NetworkShape& shape() const = 0;
 
-  // Of those it was made with, how many it takes.
+  // How many of the samples that it was made with it uses.
   virtual std::size_t num_samples() const = 0;
 
-  // Takes the first `count` of its samples from now on, at least num_samples().
+  // Uses the first `count` of these samples from now on, at least num_samples().
   virtual void Grow(std::size_t count) = 0;
 
-  // Sets weight, >= 0, and strata of the energy term.
+  // Sets the weight, >= 0, and the strata of the energy term.
   virtual void SetEnergy(double weight, std::span<const EnergyStratum> strata) = 0;
 
   // The cost; not finite where the network overflows. weights: shape().num_weights().
@@ -59,27 +59,27 @@ class Objective {
   // if they aren't finite.
   virtual bool Gradient(const double* weights, double* cost, double* gradient) = 0;
 
-  // From now on the samples that J'J is summed over go through passes in double precision. False if they do
-  // so already.
+  // Sums J'J in double precision from now on, whatever the precision of the other passes. False if it did so
+  // already.
   virtual bool SumCurvatureInDouble() = 0;
 
-  // About the largest error of hessian, relative to its diagonal, that rounding makes.
+  // About the largest rounding error of the hessian, relative to its diagonal.
   virtual double HessianRounding() const = 0;
 
   // Mean over samples and channels of |log1p(f cos_i) - log1p(max(0, f^) cos_i)|, whatever the terms.
   virtual double MeanAbsLogError(const double* weights) = 0;
 
-  // Of the energy term so far.
+  // The work of the energy term so far.
   virtual const EnergyWork& energy_work() const = 0;
 };
 
-// `problem` must be valid. Takes the first `count` of the samples; the energy term starts with the
+// `problem` must be valid. Uses the first `count` of the samples; the energy term starts with the
 // problem's weight and EqualStrata. Work is shared among the threads that TBB grants; the result doesn't
 // depend on their number. samples must outlive it.
 std::unique_ptr<Objective> MakeObjective(const FitProblem& problem, Precision precision,
                                          const EncodedSamples& samples, std::size_t count);
 
-// Of all samples, which are copied.
+// The same with all samples, which are copied.
 std::unique_ptr<Objective> MakeObjective(const FitProblem& problem, Precision precision,
                                          std::span<const BrdfSample> samples);
 

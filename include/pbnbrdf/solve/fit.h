@@ -38,7 +38,7 @@ struct ScheduleOptions {
                                      // with Adam is that of a mean (adam.cc)
 };
 
-// Of Adam; NBRDF's settings (Sztrajman et al. 2021) are the defaults.
+// Adam's options. The defaults are NBRDF's settings (Sztrajman et al. 2021).
 struct AdamOptions {
   std::uint64_t batch = 512;    // samples a step, >= 1; an epoch's last, smaller batch is left out
   double learning_rate = 5e-4;  // > 0
@@ -57,8 +57,8 @@ struct FitOptions {
   AdamOptions adam;
   bool acceleration = true;  // lm: geodesic acceleration of its steps (lm.cc)
   Precision precision = Precision::kSingle;
-  // With the energy term: to end with no directional albedo above 1, by lowering f where it is made
-  // if the term didn't get there. The published scripts don't.
+  // With the energy term: ends with no directional albedo above 1, if need be by lowering f where energy is
+  // made. The published scripts don't.
   bool certify_energy = true;
   int threads = 0;  // 0: as many as the machine has
   // Where to start from: Shape().num_weights() numbers of the problem, or none for random ones.
@@ -87,10 +87,10 @@ inline constexpr NameTable<Termination, 5> kTerminations = {
 // What the energy term did, and how the fit came to conserve energy.
 struct EnergySummary {
   double first_max_albedo = 0.0;  // largest directional albedo of the fit without the term
-  double max_albedo = 0.0;        // and in the end, by the fit's own check
+  double max_albedo = 0.0;        // the same in the end, by the fit's own check
   int rounds = 0;                 // stages with the term; 0: it wasn't needed
   std::size_t strata = 0;         // of incident directions, in the last of them
-  double correction = 0.0;        // mean change of log(1 + f) that the rest took in the end
+  double correction = 0.0;        // mean change of log(1 + f) by the final correction
   EnergyWork work;
 };
 
@@ -102,7 +102,7 @@ struct FitSummary {
   // take; of all stages.
   int failed_factorizations = 0;
   int rejected_steps = 0;
-  std::size_t samples = 0;  // that the fit had grown to
+  std::size_t samples = 0;  // that the fit used in the end
   EnergySummary energy;     // of a fit with the energy term
   // Of single precision only: rounding changes the final cost by more than a hundredth, so that
   // double precision would have gone further.
