@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <optional>
 
@@ -30,6 +32,14 @@ Legendre EvaluateLegendre(int n, double x) {
     value = next;
   }
   return {value, n * (x * value - before) / (x * x - 1.0)};
+}
+
+// Each rule is made once.
+const GaussLegendre& RuleOf(int n) {
+  static std::mutex mutex;
+  static std::map<int, GaussLegendre> rules;
+  const std::lock_guard lock(mutex);
+  return rules.try_emplace(n, n).first->second;
 }
 
 // theta_i of a stratum, and its solid angle.
@@ -254,9 +264,9 @@ GaussLegendre::GaussLegendre(int n) : nodes(n), weights(n) {
 }
 
 AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi)
-    : x_(n_theta), x_of_first_rows_(2 * n_theta) {
+    : x_(&RuleOf(n_theta)), x_of_first_rows_(&RuleOf(2 * n_theta)) {
   const auto add_half = [&](double first, int n) {
-    const GaussLegendre rule(n);
+    const GaussLegendre& rule = RuleOf(n);
     for (int k = 0; k < n; ++k) {
       const double x = rule.nodes[k];
       phi_.push_back(first + kPi * x * x * (3.0 - 2.0 * x));
@@ -270,55 +280,85 @@ AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi)
 AlbedoQuadrature AlbedoQuadrature::OnMerlRows(int n_theta, int n_phi) {
   AlbedoQuadrature quadrature(n_theta, n_phi);
   quadrature.on_merl_rows_ = true;
+  for (int row = 0; row < kMerlRows; ++row) {
+    quadrature.row_begin_.push_back(quadrature.rows_.size());
+    quadrature.AddCell(MerlRowAngle(row), MerlRowAngle(row + 1), /*power=*/1,
+                       quadrature.RuleOfRow(row), &quadrature.rows_);
+  }
+  quadrature.row_begin_.push_back(quadrature.rows_.size());
   return quadrature;
 }
 
-std::vector<AlbedoQuadrature::Cell> AlbedoQuadrature::Cells(double theta_max) const {
-  if (!on_merl_rows_) return {{0.0, theta_max, 3, &x_}};
-  std::vector<Cell> cells;
-  for (int row = 0; row < kMerlRows; ++row) {
-    const double first = MerlRowAngle(row), last = MerlRowAngle(row + 1);
-    const GaussLegendre* rule = row < kFirstRows ? &x_of_first_rows_ : &x_;
-    if (first < theta_max) cells.push_back({first, std::min(last, theta_max), 1, rule});
+// At grazing incidence the integrand changes within a few of the first rows' widths.
+const GaussLegendre& AlbedoQuadrature::RuleOfRow(int row) const {
+  constexpr int kFirstRows = 12;
+  return row < kFirstRows ? *x_of_first_rows_ : *x_;
+}
+
+// The rule on theta_h = first + (last - first) x^power, power 1 or 3.
+void AlbedoQuadrature::AddCell(double first, double last, int power, const GaussLegendre& rule,
+                               std::vector<Tilt>* tilts) const {
+  for (std::size_t t = 0; t < rule.nodes.size(); ++t) {
+    const double x = rule.nodes[t], below = power == 1 ? 1.0 : x * x;
+    const double theta_h = first + (last - first) * below * x;
+    tilts->push_back(
+        {std::sin(theta_h), std::cos(theta_h), (last - first) * power * below * rule.weights[t]});
   }
-  return cells;
+}
+
+void AlbedoQuadrature::AddPart(const Vec3& wi, int k, std::vector<AlbedoNode>* nodes) const {
+  const double sin_i = std::hypot(wi.x, wi.y), phi_i = std::atan2(wi.y, wi.x);
+  const auto p = static_cast<std::size_t>(k);
+  // cos_o = 2 (wi.h) h.z - wi.z = |.| cos(2 theta_h - psi) reaches 0 at theta_max.
+  const double psi = std::atan2(sin_i * std::cos(phi_[p]), wi.z);
+  const double theta_max = 0.25 * kPi + 0.5 * psi;
+  const Vec3 tilt = FromSpherical(0.5 * kPi, phi_i + phi_[p]);
+  const auto add = [&](std::span<const Tilt> tilts) {
+    for (const auto& [sin_h, cos_h, weight] : tilts) {
+      const Vec3 h = {sin_h * tilt.x, sin_h * tilt.y, cos_h};
+      const double cos_d = Dot(wi, h);
+      const Vec3 wo = 2.0 * cos_d * h - wi;
+      if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
+      nodes->push_back({{wi, wo}, wo.z * 4.0 * cos_d * sin_h * weight * phi_weights_[p]});
+    }
+  };
+  std::vector<Tilt> rest;
+  if (on_merl_rows_) {
+    int row = 0;
+    while (row < kMerlRows && MerlRowAngle(row + 1) <= theta_max) ++row;
+    add(std::span(rows_).first(row_begin_[static_cast<std::size_t>(row)]));
+    if (row == kMerlRows || !(MerlRowAngle(row) < theta_max)) return;
+    AddCell(MerlRowAngle(row), theta_max, /*power=*/1, RuleOfRow(row), &rest);
+  } else {
+    AddCell(0.0, theta_max, /*power=*/3, *x_, &rest);
+  }
+  add(rest);
 }
 
 std::vector<AlbedoNode> AlbedoQuadrature::Nodes(const Vec3& wi) const {
-  const double sin_i = std::hypot(wi.x, wi.y), phi_i = std::atan2(wi.y, wi.x);
   std::vector<AlbedoNode> nodes;
-  for (std::size_t p = 0; p < phi_.size(); ++p) {
-    // cos_o = 2 (wi.h) h.z - wi.z = |.| cos(2 theta_h - psi) reaches 0 at theta_max.
-    const double psi = std::atan2(sin_i * std::cos(phi_[p]), wi.z);
-    const Vec3 tilt = FromSpherical(0.5 * kPi, phi_i + phi_[p]);
-    for (const auto& [first, last, power, rule] : Cells(0.25 * kPi + 0.5 * psi)) {
-      for (std::size_t t = 0; t < rule->nodes.size(); ++t) {
-        const double x = rule->nodes[t], below = power == 1 ? 1.0 : x * x;
-        const double theta_h = first + (last - first) * below * x;
-        const double sin_h = std::sin(theta_h);
-        const Vec3 h = {sin_h * tilt.x, sin_h * tilt.y, std::cos(theta_h)};
-        const double cos_d = Dot(wi, h);
-        const Vec3 wo = 2.0 * cos_d * h - wi;
-        if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
-        const double solid_angle_h =
-            sin_h * (last - first) * power * below * rule->weights[t] * phi_weights_[p];
-        nodes.push_back({{wi, wo}, wo.z * 4.0 * cos_d * solid_angle_h});
-      }
-    }
-  }
+  for (int k = 0; k < NumParts(); ++k) AddPart(wi, k, &nodes);
   return nodes;
 }
 
+// In batches that stay in the cache.
 Rgb DirectionalAlbedo(const Brdf& brdf, const Vec3& wi, const AlbedoQuadrature& quadrature) {
-  const std::vector<AlbedoNode> nodes = quadrature.Nodes(wi);
+  constexpr std::size_t kBatch = 2048;
+  std::vector<AlbedoNode> nodes;
   std::vector<DirectionPair> pairs;
-  pairs.reserve(nodes.size());
-  for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
-  std::vector<Rgb> values(nodes.size());
-  brdf.Evaluate(pairs, values);
+  std::vector<Rgb> values;
   Rgb albedo = {};
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    for (int c = 0; c < 3; ++c) albedo[c] += nodes[n].weight * values[n][c];
+  for (int k = 0; k < quadrature.NumParts(); ++k) {
+    quadrature.AddPart(wi, k, &nodes);
+    if (nodes.size() < kBatch && k + 1 < quadrature.NumParts()) continue;
+    pairs.clear();
+    for (const AlbedoNode& node : nodes) pairs.push_back(node.pair);
+    values.resize(nodes.size());
+    brdf.Evaluate(pairs, values);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (int c = 0; c < 3; ++c) albedo[c] += nodes[n].weight * values[n][c];
+    }
+    nodes.clear();
   }
   return albedo;
 }

@@ -15,10 +15,10 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr AlbedoGrid kGrid = {.angles = 160, .n_phi = 64};
-constexpr double kRounding = 2e-6;  // of an albedo in single precision, as seen
-constexpr double kMinStep = 1e-7;   // of log(1 + f)
-constexpr double kWatched = 0.03;   // of an albedo below the bound, that a step may raise above it
+constexpr AlbedoGrid kGrid = {
+    .angles = 160, .tolerance = 1e-5, .excess_tolerance = 0.1, .n_phi = 64};
+constexpr double kMinStep = 1e-7;  // of log(1 + f)
+constexpr double kWatched = 0.03;  // of an albedo below the target, that a step may raise above it
 constexpr int kMaxProfiles = 30, kMaxSteps = 60, kMaxNewtonSteps = 50;
 // After so many steps the whole channel is lowered. Fits that end by time need up to 10 steps.
 constexpr int kLocalSteps = 24, kLocalRounds = 8;
@@ -152,14 +152,13 @@ class Corrector {
 
   Correction Run() {
     double largest = 0.0;
-    // In single precision until nothing is left to do; then in double.
+    // In single precision until nothing is left to do; then as exactly as a check.
     for (bool exactly : {false, true}) {
-      const double bound = exactly ? kMaxAlbedo : kMaxAlbedo - kRounding;
       for (int k = 0; k < kMaxProfiles; ++k) {
         const std::vector<IncidentAlbedo> profile = Profile(exactly);
         largest = Largest(LargestAlbedos(profile));
-        if (!(largest > bound)) break;
-        LowerAll(profile, bound, k);
+        if (!(largest > kMaxAlbedo)) break;
+        LowerAll(profile, k);
       }
     }
     return {MeanChange(), largest};
@@ -179,10 +178,10 @@ class Corrector {
   }
 
   // Lowers the largest albedo again and again. In between only the large ones are measured anew.
-  void LowerAll(const std::vector<IncidentAlbedo>& profile, double bound, int number) {
+  void LowerAll(const std::vector<IncidentAlbedo>& profile, int number) {
     Watched watched;
     for (const IncidentAlbedo& at : profile) {
-      if (Largest(at.albedo) > bound - kWatched) watched.at.push_back(at);
+      if (Largest(at.albedo) > kTargetAlbedo - kWatched) watched.at.push_back(at);
     }
     watched.own.resize(watched.at.size());
     Measure(&watched, /*anew=*/false);
@@ -190,7 +189,7 @@ class Corrector {
     for (int step = 0; step < kMaxSteps; ++step) {
       bool lowered = false;
       for (int c = 0; c < shape_.num_outputs(); ++c) {
-        lowered |= LowerLargest(watched.at, c, bound, number, locally && step < kLocalSteps);
+        lowered |= LowerLargest(watched.at, c, number, locally && step < kLocalSteps);
       }
       if (!lowered) return;
       Measure(&watched, /*anew=*/true);
@@ -209,12 +208,12 @@ class Corrector {
     });
   }
 
-  // false if it isn't above the bound.
-  bool LowerLargest(const std::vector<IncidentAlbedo>& watched, int channel, double bound,
-                    int number, bool locally) {
+  // false if it isn't above the target.
+  bool LowerLargest(const std::vector<IncidentAlbedo>& watched, int channel, int number,
+                    bool locally) {
     const IncidentAlbedo& there = LargestIn(watched, channel);
     const double albedo = there.albedo[channel];
-    if (!(albedo > bound)) return false;
+    if (!(albedo > kTargetAlbedo)) return false;
     const std::vector<AlbedoNode> nodes =
         quadrature_.Nodes(FromSpherical(there.theta_i, there.phi_i));
     std::vector<DirectionPair> pairs;
@@ -222,7 +221,7 @@ class Corrector {
     const Rows rows = RowsAt(shape_, *weights_, pairs, channel);
     VectorXd direction = VectorXd::Unit(rows.features.cols(), rows.features.cols() - 1);
     if (locally) direction = typical_.Cheapest(AlbedoGradient(rows, nodes));
-    double step = StepTo(rows, nodes, direction, albedo, bound * (1.0 - kMinStep));
+    double step = StepTo(rows, nodes, direction, albedo, kTargetAlbedo * (1.0 - kMinStep));
     if (!locally) step += std::ldexp(kMinStep, number);  // more and more, if it goes on
     LastWeights(weights_, channel) -= step * direction;
     return true;

@@ -12,14 +12,18 @@ namespace pbnbrdf {
 // other checks, at other angles and by other quadratures, find at most 1 + 1e-6.
 inline constexpr double kMaxAlbedo = 1.0 - 2e-5;
 
+// What a fit aims at. The check can do without double precision there: 1 is then farther off than
+// what single precision may be wrong by (albedo.cc).
+inline constexpr double kTargetAlbedo = 1.0 - 5e-5;
+
 struct Correction {
   double change;  // mean |change of log(1 + f)| over directions, in the channel that changed most
   double max_albedo;  // the largest directional albedo that is left
 };
 
 // Changes the weights of the last layer until no directional albedo is above kMaxAlbedo. Each step
-// takes the direction where an albedo is largest, and lowers it by the change of the channel's weights
-// that changes log(1 + f) least, in the mean square over all angles: near that direction if the
+// takes the direction where an albedo is largest, and lowers it to kTargetAlbedo by the change of the channel's
+// weights that changes log(1 + f) least, in the mean square over all angles: near that direction if the
 // network can tell it from others. If albedos keep exceeding 1, the whole channel is lowered, which always
 // ends. A reciprocal network stays so.
 //

@@ -74,7 +74,7 @@ double EnergyConstraints::Measure(const std::vector<double>& weights) {
     EnergyStratum& stratum = strata_[k];
     const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
     const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
-    for (int c = 0; c < 3; ++c) stratum.limit[c] = kMaxAlbedo - (exact[c] - own[c]);
+    for (int c = 0; c < 3; ++c) stratum.limit[c] = kTargetAlbedo - (exact[c] - own[c]);
   });
   return Largest(LargestAlbedos(profile_));
 }
@@ -89,18 +89,18 @@ void EnergyConstraints::Exchange() {
 
 // Unless there is one nearby, or the albedo there is small enough.
 void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
-  if (!(Largest(at.albedo) > kMaxAlbedo)) return;
+  if (!(Largest(at.albedo) > kTargetAlbedo)) return;
   const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
   for (const EnergyStratum& stratum : strata_) {
     if (Length(stratum.wi - wi) <= kSameDirection * wi.z) return;
   }
-  strata_.push_back({wi, solid_angle_, {kMaxAlbedo, kMaxAlbedo, kMaxAlbedo}});
+  strata_.push_back({wi, solid_angle_, {kTargetAlbedo, kTargetAlbedo, kTargetAlbedo}});
 }
 
 // What lowering all of log(1 + f) takes if the largest directional albedo is so much; LowerToConserve takes
 // less.
 double CorrectionOf(double max_albedo) {
-  return std::log((std::max(max_albedo, kMaxAlbedo) + kPi) / (kMaxAlbedo + kPi));
+  return std::log((std::max(max_albedo, kTargetAlbedo) + kPi) / (kTargetAlbedo + kPi));
 }
 
 // The weight with which the energy term costs as much as all other terms; 0 where its cost isn't finite.

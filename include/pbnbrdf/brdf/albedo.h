@@ -41,21 +41,25 @@ class AlbedoQuadrature {
   // wi: of unit length, above the horizon. The nodes are above it, too.
   std::vector<AlbedoNode> Nodes(const Vec3& wi) const;
 
+  // The same, part by part: part k, up to NumParts(), has the nodes of one phi_h. Appends them.
+  int NumParts() const { return static_cast<int>(phi_.size()); }
+  void AddPart(const Vec3& wi, int k, std::vector<AlbedoNode>* nodes) const;
+
  private:
-  // A part of [0, theta_max], in theta_h = first + (last - first) x^power, power 1 or 3.
-  struct Cell {
-    double first, last;
-    int power;
-    const GaussLegendre* rule;
+  // A node over theta_h.
+  struct Tilt {
+    double sin_h, cos_h;
+    double weight;  // dtheta_h
   };
 
-  // At grazing incidence the integrand changes within a few of the first rows' widths.
-  static constexpr int kFirstRows = 12;
+  void AddCell(double first, double last, int power, const GaussLegendre& rule,
+               std::vector<Tilt>* tilts) const;
+  const GaussLegendre& RuleOfRow(int row) const;
 
-  std::vector<Cell> Cells(double theta_max) const;
-
-  GaussLegendre x_, x_of_first_rows_;
+  const GaussLegendre *x_, *x_of_first_rows_;
   bool on_merl_rows_ = false;
+  std::vector<Tilt> rows_;                 // of whole rows, if on MERL rows
+  std::vector<std::size_t> row_begin_;     // in rows_, of each row and of the end
   std::vector<double> phi_, phi_weights_;  // phi_h from the plane of incidence on, radians
 };
 
