@@ -4,6 +4,7 @@
 
 #include "base/about.h"
 #include "base/text.h"
+#include "base/timer.h"
 #include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"
@@ -58,8 +59,30 @@ std::vector<double> WeightsOf(const std::string& path, const NetworkShape& shape
   return network.weights();
 }
 
-// What measuring may take beyond --max_seconds: seconds, or a part of them.
-constexpr double kMinMeasuring = 0.4, kMeasuringPart = 0.1;
+constexpr double kMinPart = 0.8;  // of --max_seconds, for the fit itself
+
+// How --max_seconds is used: for reading, the fit and measuring it.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double max_seconds) : max_seconds_(max_seconds) {}
+
+  // For a fit that starts now.
+  double ForFit(double seconds_of_checks) const {
+    return std::max(End() - timer_.Seconds() - seconds_of_checks, kMinPart * max_seconds_);
+  }
+
+  // For errors at held-out samples, after the fit. Negative if nothing is left.
+  double ForErrors(double seconds_of_checks) const {
+    return End() - timer_.Seconds() - seconds_of_checks;
+  }
+
+ private:
+  // When all should be done: half of what a fit may run over, which is half a second or a tenth.
+  double End() const { return max_seconds_ + std::max(0.25, 0.05 * max_seconds_); }
+
+  const Timer timer_;
+  const double max_seconds_;
+};
 
 std::string ProgressText(const FitProgress& progress) {
   return StrCat("iteration ", progress.iteration, "  cost ", progress.cost, "  held-out error ",
@@ -72,13 +95,17 @@ std::string TraceRow(const FitProgress& progress) {
 }
 
 // With the rows of the trace.
-Fit FitNetwork(const FitCommandOptions& options, const Brdf& material, std::string* trace) {
+Fit FitNetwork(const FitCommandOptions& options, const Brdf& material, double max_seconds,
+               std::string* trace) {
   const FitProblem& problem = options.setup.problem;
   FitOptions fit_options = options.setup.options;
   if (!options.init.empty()) {
     fit_options.initial_weights = WeightsOf(options.init, problem.For(material).Shape());
   }
+  fit_options.schedule.max_seconds = max_seconds;
+  fit_options.limits_wall_time = true;
   const ProgressLine line(options.quiet);
+  fit_options.reports_heldout_error = line.IsShown() || !options.trace.empty();
   fit_options.on_iteration = [&](const FitProgress& progress) {
     line.Show(ProgressText(progress));
     *trace += TraceRow(progress);
@@ -102,6 +129,9 @@ void PrintFit(const std::string& out, const Brdf& material, const Fit& fit, cons
             << NameOf(kTerminations, summary.termination) << " after " << summary.iterations
             << " iterations, " << summary.seconds << " s\n"
             << MeasuresText(measures) << EnergyText(summary.energy);
+  if (summary.termination == Termination::kMaxSeconds) {
+    std::cout << "--max_seconds ended the fit before it was done: more time gets closer\n";
+  }
   if (summary.termination == Termination::kDiverged) {
     std::cout << "diverged: " << summary.message << "\n";
   }
@@ -118,13 +148,14 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
   CheckFlags([&] { ValidateFit(options.setup.problem, options.setup.options); });
   CheckOutputs({{"out", options.out}, {"summary", options.summary}, {"trace", options.trace}});
   CatchInterrupt();
+  const TimeLimit limit(options.setup.options.schedule.max_seconds);
   const std::unique_ptr<Brdf> material = options.material.Open();
+  const double checks = SecondsOfChecks(options.setup.problem.For(*material).Shape());
   std::string trace = "iteration,seconds,cost,heldout_error\n";
-  const double max_seconds = options.setup.options.schedule.max_seconds;
-  const Fit fit = FitNetwork(options, *material, &trace);
+  const Fit fit = FitNetwork(options, *material, limit.ForFit(checks), &trace);
   const Json measures =
       MeasureFit(*material, fit.network, fit.network.weights().size(),
-                 {.seconds = std::max(kMinMeasuring, kMeasuringPart * max_seconds)});
+                 {.seconds = limit.ForErrors(checks), .profile = fit.summary.energy.profile});
 
   FitCommandOptions copy = options;
   const FitSubject subject = {

@@ -143,6 +143,8 @@ std::vector<ScenePlan> PlanFits(const Scene& scene, const FitSceneOptions& optio
 Fit FitPlanned(const ScenePlan& plan, const Brdf& material, const FitSceneOptions& options) {
   const ProgressLine line(options.quiet);
   FitOptions fit_options = options.setup.options;
+  fit_options.reports_heldout_error = line.IsShown();
+  fit_options.limits_wall_time = true;
   fit_options.on_iteration = [&](const FitProgress& progress) {
     line.Show(StrCat(plan.name, "  iteration ", progress.iteration, "  held-out error ",
                      progress.heldout_error, "  ", SecondsText(progress.seconds)));

@@ -14,6 +14,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  bool IsShown() const { return shows_; }
+
   // In place of what it showed before.
   void Show(const std::string& text) const;
   void Clear() const { Show(""); }

@@ -1,6 +1,5 @@
 #include "report.h"
 
-#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -8,6 +7,7 @@
 #include <sstream>
 
 #include "base/text.h"
+#include "base/timer.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "problem/problem_fields.h"
@@ -21,7 +21,14 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMaxMaterialAngle = 85.0 * kDegree;
 constexpr std::size_t kTrialSamples = 500;  // to see how long one takes
 constexpr double kAlbedoValues = 1e6;       // about what the albedos of a material take
-constexpr double kMinSamples = 5000.0;
+constexpr double kMinSamples = 1000.0;
+// How often the material and the fit are evaluated for each held-out sample, and the part of the time for that.
+constexpr double kEvaluations = 3.0, kErrorsPart = 0.4;
+constexpr double kAlbedoPart =
+    0.25;  // of the time, for the albedos of the material: about the rest
+// Of the angles that the check of a network's energy has, a few tell the time that it takes.
+constexpr int kTrialAngles = 10, kTrials = 4;
+constexpr double kChecksPerAngle = 1.7;  // with refinements and reciprocity
 
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
@@ -39,8 +46,8 @@ struct Allowance {
   bool material_albedo;
 };
 
-Allowance AllowanceFor(const Brdf& material, const MeasureOptions& options) {
-  if (std::isinf(options.seconds)) return {options.samples, true};
+// What a value takes: seconds.
+double SecondsOfValue(const Brdf& brdf) {
   std::vector<DirectionPair> pairs;
   for (std::size_t n = 0; n < kTrialSamples; ++n) {
     const double part = (static_cast<double>(n) + 0.5) / kTrialSamples;
@@ -48,14 +55,18 @@ Allowance AllowanceFor(const Brdf& material, const MeasureOptions& options) {
         {FromSpherical(1.5 * part, 0.0), FromSpherical(1.5 * (1.0 - part), 40.0 * part)});
   }
   std::vector<Rgb> values(pairs.size());
-  const auto start = std::chrono::steady_clock::now();
-  material.EvaluateUnclipped(pairs, values);
-  const double per_sample =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
-      kTrialSamples;
-  const double affordable = std::max(0.05 * options.seconds / per_sample, kMinSamples);
+  const Timer timer;
+  brdf.EvaluateUnclipped(pairs, values);
+  return timer.Seconds() / kTrialSamples;
+}
+
+Allowance AllowanceFor(const Brdf& material, const Brdf& fit, const MeasureOptions& options) {
+  if (std::isinf(options.seconds)) return {options.samples, true};
+  const double of_material = SecondsOfValue(material);
+  const double of_sample = kEvaluations * (of_material + SecondsOfValue(fit));
+  const double affordable = std::max(kErrorsPart * options.seconds / of_sample, kMinSamples);
   return {static_cast<std::size_t>(std::min(affordable, static_cast<double>(options.samples))),
-          kAlbedoValues * per_sample < 0.25 * options.seconds};
+          kAlbedoValues * of_material < kAlbedoPart * options.seconds};
 }
 
 Json EnergyJson(const EnergySummary& energy) {
@@ -74,14 +85,30 @@ std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms
 
 }  // namespace
 
+double SecondsOfChecks(const NetworkShape& shape) {
+  const NeuralBrdf network(shape, std::vector<double>(shape.num_weights()));
+  AlbedoGrid grid;
+  const double trials = static_cast<double>(grid.angles) / kTrialAngles;
+  grid.angles = kTrialAngles;
+  grid.refinements = 0;
+  double least =
+      std::numeric_limits<double>::infinity();  // other work on the machine counts for nothing
+  for (int k = 0; k < kTrials; ++k) {
+    const Timer timer;
+    AlbedoProfile(network, grid);
+    least = std::min(least, timer.Seconds());
+  }
+  return kChecksPerAngle * trials * least;
+}
+
 Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                 const MeasureOptions& options) {
-  const Allowance allowance = AllowanceFor(material, options);
+  const Allowance allowance = AllowanceFor(material, fit, options);
   const std::vector<BrdfSample> heldout = HeldOutSamples(material, allowance.samples, options.seed);
   const HeldOutErrors errors = MeasureErrors(heldout, fit);
   const ColorErrors colors = MeasureColorErrors(heldout, fit);
   const Reciprocity reciprocity = MeasureReciprocity(fit);
-  const Energy energy = MeasureEnergy(fit);
+  const Energy energy = options.profile.empty() ? MeasureEnergy(fit) : EnergyOf(options.profile);
   Energy of_material;
   if (allowance.material_albedo) {
     of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
@@ -93,6 +120,7 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
           {"reciprocal_floor", ReciprocalFloor(heldout, material)},
           {"measured_part", coverage.known},
           {"measured_in_plane", coverage.in_plane},
+          {"cut_short", allowance.samples < options.samples || !allowance.material_albedo},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
           {"hcl", reciprocity.hcl},
@@ -121,6 +149,8 @@ std::string MeasuresText(const Json& measures) {
       {"reciprocal_floor",
        "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
       {"measured_part", "of all pairs of directions: where the material is known, or nearly"},
+      {"cut_short",
+       "whether there was time for fewer samples only, or not for the material's energy"},
       {"measured_in_plane", "whether only one plane through the normal was measured"},
       {"rmse", "root mean square error of f cos, 1/sr"},
       {"hrl", "Helmholtz reciprocity loss (eq. 8)"},

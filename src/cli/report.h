@@ -16,8 +16,13 @@ namespace pbnbrdf::cli {
 struct MeasureOptions {
   std::uint64_t samples = 200000;
   std::uint64_t seed = 1;
-  double seconds = std::numeric_limits<double>::infinity();  // about what it may take
+  // About what it may take, besides SecondsOfChecks. Else there are fewer samples, and no albedos of the material.
+  double seconds = std::numeric_limits<double>::infinity();
+  std::vector<IncidentAlbedo> profile = {};  // EnergySummary::profile, where it is known
 };
+
+// About what MeasureFit takes for a network's own energy and reciprocity.
+double SecondsOfChecks(const NetworkShape& shape);
 
 // The keys are those of MeasuresText, in its order. parameters: numbers that the fit stores.
 Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,

@@ -197,8 +197,12 @@ Reciprocity MeasureReciprocity(const Brdf& brdf) {
 }
 
 Energy MeasureEnergy(const Brdf& brdf, const AlbedoGrid& grid) {
+  return EnergyOf(AlbedoProfile(brdf, grid));
+}
+
+Energy EnergyOf(const std::vector<IncidentAlbedo>& profile) {
   Energy energy;
-  for (const IncidentAlbedo& at : AlbedoProfile(brdf, grid)) {
+  for (const IncidentAlbedo& at : profile) {
     for (int c = 0; c < 3; ++c) {
       energy.eal += at.solid_angle * std::max(0.0, at.albedo[c] - 1.0) / 3.0;
       if (!(at.albedo[c] > energy.max_directional_albedo)) continue;

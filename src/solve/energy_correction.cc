@@ -152,16 +152,17 @@ class Corrector {
 
   Correction Run() {
     double largest = 0.0;
+    std::vector<IncidentAlbedo> profile;
     // In single precision until nothing is left to do; then as exactly as a check.
     for (bool exactly : {false, true}) {
       for (int k = 0; k < kMaxProfiles; ++k) {
-        const std::vector<IncidentAlbedo> profile = Profile(exactly);
+        profile = Profile(exactly);
         largest = Largest(LargestAlbedos(profile));
         if (!(largest > kMaxAlbedo)) break;
         LowerAll(profile, k);
       }
     }
-    return {MeanChange(), largest};
+    return {MeanChange(), largest, std::move(profile)};
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/network/network_shape.h"
 
 namespace pbnbrdf {
@@ -18,7 +19,8 @@ inline constexpr double kTargetAlbedo = 1.0 - 5e-5;
 
 struct Correction {
   double change;  // mean |change of log(1 + f)| over directions, in the channel that changed most
-  double max_albedo;  // the largest directional albedo that is left
+  double max_albedo;                    // the largest directional albedo that is left
+  std::vector<IncidentAlbedo> profile;  // of all directional albedos, by the finest check
 };
 
 // Changes the weights of the last layer until no directional albedo is above kMaxAlbedo. Each step

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "base/timer.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "solve/energy_correction.h"
 #include "solve/training.h"
@@ -31,6 +32,9 @@ constexpr double kSmallCorrection = 0.05;   // of the mean absolute log error
 constexpr double kClearlyConserved = 0.99;  // a largest albedo that needs no finer check
 constexpr double kMinCost = 1e-7;           // of the other terms, for the weight of this one
 constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
+// Kept of the time for the albedos after the last stage and for the correction: in profiles by kRoundGrid, and, where
+// energy was made, this part.
+constexpr double kReserveProfiles = 3.0, kCorrectionPart = 0.15;
 constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
 
 class EnergyConstraints {
@@ -150,20 +154,59 @@ void RunRounds(double weight, EnergyConstraints* constraints, Training* training
   summary.message = message;
 }
 
+// A network that conserved energy when the clock stopped its fit.
+struct Conserving {
+  std::vector<double> weights;  // none if there isn't one
+  double max_albedo = 0.0;
+};
+
+// With the stages that the clock has cut short, the energy term not being needed so far.
+void GoOn(EnergyConstraints* constraints, Training* training) {
+  FitSummary& summary = training->summary();
+  if (!training->MayContinue()) return;
+  RunStages(training, training->options().schedule.max_iterations - summary.iterations);
+  summary.energy.max_albedo = constraints->Measure(training->weights());
+}
+
+// Goes back where the correction took more than the fit has gained since.
+void TakeBetter(const Conserving& before, Training* training) {
+  Objective& validation = training->validation();
+  const double error = validation.MeanAbsLogError(training->weights().data());
+  if (error <= validation.MeanAbsLogError(before.weights.data())) return;
+  training->weights() = before.weights;
+  EnergySummary& energy = training->summary().energy;
+  energy.max_albedo = before.max_albedo;
+  energy.correction = 0.0;
+  energy.profile.clear();
+}
+
 }  // namespace
 
 void ConserveEnergy(const FitProblem& problem, Training* training) {
   EnergySummary& energy = training->summary().energy;
   EnergyConstraints constraints(problem);
+  const Timer timer;
   energy.first_max_albedo = energy.max_albedo = constraints.Measure(training->weights());
+  const double seconds = timer.Seconds();
+  Conserving before;
   if (!training->solver().traits.is_stochastic) {
+    if (training->summary().termination == Termination::kMaxSeconds &&
+        energy.max_albedo < kClearlyConserved) {
+      before = {training->weights(), energy.max_albedo};
+      training->LimitTo(1.0, kReserveProfiles * seconds);
+      GoOn(&constraints, training);
+    }
+    training->LimitTo(1.0 - kCorrectionPart, kReserveProfiles * seconds);
     RunRounds(problem.terms.EnergyWeight(), &constraints, training);
+    training->LimitTo(1.0);
   }
   if (energy.max_albedo < kClearlyConserved || !training->options().certify_energy) return;
   const Correction correction = LowerToConserve(
       problem.Shape(), [training] { return training->MayContinue(); }, &training->weights());
   energy.correction = correction.change;
   energy.max_albedo = correction.max_albedo;
+  energy.profile = correction.profile;
+  if (!before.weights.empty()) TakeBetter(before, training);
 }
 
 }  // namespace pbnbrdf

@@ -14,7 +14,8 @@
 namespace pbnbrdf {
 namespace {
 
-// Of the time, for the stages without the energy term, so that some is left for those with it.
+// Of the time, for the stages without the energy term, so that some is left for those with it. What these don't
+// need goes to more of the former.
 constexpr double kFirstPart = 0.7;
 
 // The energy term waits until the rest is fitted: from random weights its square outweighs all else

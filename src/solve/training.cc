@@ -25,6 +25,9 @@ constexpr std::size_t kStochasticCostSamples =
 // Once a fit gains no more by iterations, J'J of more samples takes it a few per cent further, and of all of
 // them hardly more: seen on measured materials, for half of the time.
 constexpr std::size_t kCurvatureGrowth = 4;
+constexpr double kMinPart = 0.5;  // of the time, that a reserve leaves
+constexpr double kLeadTime =
+    0.5;  // of the last iteration's time: the next one ends as often before the limit as after
 constexpr double kRoundingShare = 0.01;  // FitSummary::precision_limited
 
 constexpr std::size_t kStartSamples = 1024;  // on which a start is judged
@@ -125,6 +128,7 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
       heldout_samples_(*problem.network.encoding),
       strata_(EqualStrata(problem)),
       curvature_samples_(options.schedule.curvature_samples),
+      limit_(options.schedule.max_seconds),
       weights_(options.initial_weights) {
   SampleStream validation_stream = stream_.WithSeed(problem.sampling.seed + kValidationSeed);
   DrawInto(&validation_stream, kValidationSamples, &validation_samples_);
@@ -135,7 +139,7 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
   validation_ = MakeObjective(WithoutEnergy(problem_), options.precision, validation_samples_,
                               validation_samples_.size());
   summary_.final_cost = std::numeric_limits<double>::infinity();
-  if (!options.on_iteration) return;
+  if (!options.on_iteration || !options.reports_heldout_error) return;
   timer_.Exclude([&] {
     heldout_samples_.Add(HeldOutSamples(material, kHeldOutSamples, kHeldOutSeed));
     heldout_ = MakeObjective(WithoutEnergy(problem_), options.precision, heldout_samples_,
@@ -162,8 +166,13 @@ bool Training::MayContinue() const {
   return summary_.termination != Termination::kInterrupted && SecondsLeft() > 0.0;
 }
 
+void Training::LimitTo(double part, double reserve) {
+  const double seconds = options_.schedule.max_seconds;
+  limit_ = std::min(part * seconds, std::max(seconds - reserve, kMinPart * seconds));
+}
+
 double Training::SecondsLeft() const {
-  return limit_ * options_.schedule.max_seconds - timer_.Seconds();
+  return limit_ - (options_.limits_wall_time ? wall_timer_ : timer_).Seconds();
 }
 
 void Training::TakeMoreSamples() {
@@ -196,7 +205,13 @@ double Training::Minimize(int max_iterations,
   stage.max_iterations = max_iterations;
   stage.curvature_samples = curvature_samples_;
   stage.function_tolerance = options_.schedule.function_tolerance;
-  stage.seconds_left = [this] { return SecondsLeft(); };
+  // Less what the last iteration took, as the next one will take as long.
+  double last = SecondsLeft();
+  stage.seconds_left = [this, last]() mutable {
+    const double before = last;
+    last = SecondsLeft();
+    return last - kLeadTime * (before - last);
+  };
   stage.on_iteration = std::move(on_iteration);
   const StageResult result =
       solver_.minimize({problem_, options_, samples_, strata_, objective_.get()}, stage, &weights_);
@@ -216,7 +231,7 @@ bool Training::Report(int iteration, double cost) {
   progress.cost = cost;
   progress.seconds = timer_.Seconds();
   return timer_.Exclude([&] {
-    progress.heldout_error = heldout_->MeanAbsLogError(weights_.data());
+    progress.heldout_error = heldout_ ? heldout_->MeanAbsLogError(weights_.data()) : 0.0;
     return options_.on_iteration(progress);
   });
 }

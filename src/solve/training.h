@@ -30,8 +30,12 @@ class Training {
   // At random weights, those of the index-th start.
   void StartAnew(int index);
 
-  // From now on the clock ends the fit when this part of FitOptions::schedule.max_seconds has passed.
-  void LimitTo(double part) { limit_ = part; }
+  // From now on the clock ends the fit when this part of FitOptions::schedule.max_seconds has passed, and before
+  // the last `reserve` seconds of them, unless these are most of them.
+  void LimitTo(double part, double reserve = 0.0);
+
+  // Until the clock ends the fit.
+  double SecondsLeft() const;
 
   // Whether neither the user nor the clock has ended the fit.
   bool MayContinue() const;
@@ -57,10 +61,9 @@ class Training {
   void Finish();
 
  private:
-  double SecondsLeft() const;
   bool AgreesInDouble();
 
-  Timer timer_;
+  Timer timer_, wall_timer_;  // without what isn't to be counted, and all
   const FitOptions& options_;
   const Solver& solver_;
   FitProblem problem_;
@@ -71,7 +74,7 @@ class Training {
   std::vector<EnergyStratum> strata_;
   std::unique_ptr<Objective> objective_, validation_, heldout_;
   std::size_t curvature_samples_;
-  double limit_ = 1.0;
+  double limit_;  // seconds
   std::vector<double> weights_;
   FitSummary summary_;
 };
@@ -83,7 +86,8 @@ void RunStarts(Training* training);
 void RunStages(Training* training, int max_iterations);
 
 // Brings all directional albedos to at most 1: by stages with the energy term (eq. 5) and, where that isn't
-// enough, by lowering the network as a whole. problem: with the energy term's weight to begin with.
+// enough, by lowering the network as a whole. problem: with the energy term's weight to begin with. A fit that the
+// clock has stopped, and that conserves energy, first goes on for as long as it may.
 void ConserveEnergy(const FitProblem& problem, Training* training);
 
 }  // namespace pbnbrdf

@@ -157,7 +157,7 @@ TEST_F(Cli, MeasureHasExactlyTheDocumentedKeys) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : measures.items()) {
     keys.push_back(key);
-    if (key == "measured_in_plane") {
+    if (key == "measured_in_plane" || key == "cut_short") {
       EXPECT_TRUE(value.is_boolean());
     } else {
       EXPECT_EQ(value.is_number(), !key.ends_with("energy")) << key;
@@ -166,10 +166,10 @@ TEST_F(Cli, MeasureHasExactlyTheDocumentedKeys) {
   EXPECT_THAT(keys,
               testing::UnorderedElementsAre(
                   "mean_abs_log_error", "error_at_measured", "reciprocal_floor", "measured_part",
-                  "measured_in_plane", "rmse", "hrl", "hcl", "max_directional_albedo", "energy",
-                  "eal", "material_max_directional_albedo", "material_energy", "chromaticity_error",
-                  "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean", "dark_hue_chroma_p95",
-                  "parameters", "samples", "dark_samples"));
+                  "measured_in_plane", "cut_short", "rmse", "hrl", "hcl", "max_directional_albedo",
+                  "energy", "eal", "material_max_directional_albedo", "material_energy",
+                  "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
+                  "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
   const Result text = Run("measure --samples=2000 --fit=" + Path("a.safetensors") + material);
@@ -189,6 +189,21 @@ TEST_F(Cli, MeasureSaysWhereEnergyIsMade) {
       0);
   const std::string measure_b = "measure --json --samples=2000 --fit=" + Path("b.safetensors");
   EXPECT_EQ(json::parse(Run(measure_b + material).out)["energy"], "certified");
+}
+
+TEST_F(Cli, AFitThatTheClockEndsIsCertifiedAndSaysSo) {
+  const Result result =
+      Run("fit --material=builtin:spectralon --max_seconds=0.3 --max_iterations=100000" +
+          std::string(" --function_tolerance=0 --out=") + Path("a.safetensors") +
+          " --summary=" + Path("a.json"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("--max_seconds ended the fit before it was done"));
+  const json summary = json::parse(ReadFile(Path("a.json"), 1 << 20));
+  EXPECT_EQ(summary["termination"], "max_seconds");
+  EXPECT_EQ(summary["energy"], "certified");
+  EXPECT_EQ(summary["cut_short"], true);
+  EXPECT_THAT(summary["problem"], HasSubstr("--max_seconds=0.3"));  // as asked for
+  EXPECT_EQ(NeuralBrdf::Read(Path("a.safetensors")).weights().size(), 675u);
 }
 
 }  // namespace

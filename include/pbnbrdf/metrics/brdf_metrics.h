@@ -73,4 +73,7 @@ struct Energy {
 
 Energy MeasureEnergy(const Brdf& brdf, const AlbedoGrid& grid = {});
 
+// Of a profile that is known already.
+Energy EnergyOf(const std::vector<IncidentAlbedo>& profile);
+
 }  // namespace pbnbrdf

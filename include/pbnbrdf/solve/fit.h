@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/objective.h"
 
@@ -65,6 +66,10 @@ struct FitOptions {
   std::vector<double> initial_weights;
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
+  // Whether on_iteration is told the held-out error, which takes time; else it is told 0.
+  bool reports_heldout_error = true;
+  // Whether max_seconds limits that time, too, and that of on_iteration; FitSummary::seconds never counts it.
+  bool limits_wall_time = false;
 };
 
 enum class Termination {
@@ -91,6 +96,8 @@ struct EnergySummary {
   int rounds = 0;                 // stages with the term; 0: it wasn't needed
   std::size_t strata = 0;         // of incident directions, in the last of them
   double correction = 0.0;        // mean change of log(1 + f) by the final correction
+  std::vector<IncidentAlbedo>
+      profile;  // of the network's albedos, as MeasureEnergy has them, or none
   EnergyWork work;
 };
 
