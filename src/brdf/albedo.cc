@@ -180,13 +180,15 @@ class RefinedAlbedo {
 // bound.
 std::vector<double> Maxima(std::span<const IncidentAlbedo> row, const Rgb& bound) {
   constexpr double kMostGains = 4.0, kMargin = 1e-4;  // relative
+  // Rounding of values mustn't move the angles: a table's albedo may jump between two of them.
+  constexpr double kAngle = 1e-9;
   std::vector<double> angles;
   for (std::size_t k = 1; k + 1 < row.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
       const std::optional<Vertex> vertex = FindVertex(&row[k], c);
       if (!vertex) continue;
       const double most = row[k].albedo[c] + kMostGains * vertex->gain;
-      const double theta_i = row[k].theta_i + vertex->step;
+      const double theta_i = kAngle * std::round((row[k].theta_i + vertex->step) / kAngle);
       const bool is_known = std::find(angles.begin(), angles.end(), theta_i) != angles.end();
       // Known are those of grey materials, by their first channel.
       if (most >= (1.0 - kMargin) * bound[c] && !is_known) angles.push_back(theta_i);

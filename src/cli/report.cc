@@ -21,7 +21,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMaxMaterialAngle = 85.0 * kDegree;
 constexpr std::size_t kTrialSamples = 500;  // to see how long one takes
 constexpr double kAlbedoValues = 1e6;       // about what the albedos of a material take
-constexpr double kMinSamples = 1000.0;
+constexpr double kMinSamples = 5000.0;
 // How often the material and the fit are evaluated for each held-out sample, and the part of the time for that.
 constexpr double kEvaluations = 3.0, kErrorsPart = 0.4;
 constexpr double kAlbedoPart =
