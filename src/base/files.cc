@@ -85,7 +85,12 @@ class PartialFile {
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
 
+  // With the mode of the file that is replaced.
   void Write(std::string_view content) {
+    std::error_code code;
+    const fs::file_status replaced = fs::status(target_, code);
+    if (!WriteBytes(partial_, "")) Fail(path_, ": cannot write: ", Reason());
+    if (fs::exists(replaced)) fs::permissions(partial_, replaced.permissions(), code);
     if (!WriteBytes(partial_, content)) Fail(path_, ": cannot write: ", Reason());
   }
 
@@ -142,17 +147,21 @@ void WriteFiles(const std::vector<FileContent>& files) {
   if (files.size() == 1) return WriteFile(files[0].path, files[0].content);
   for (const FileContent& file : files) {
     CheckWritable(file.path);
-    if (fs::exists(file.path) && !fs::is_regular_file(file.path)) {
+    if (file.path != "-" && fs::exists(file.path) && !fs::is_regular_file(file.path)) {
       Fail(file.path, ": cannot write: not a regular file");
     }
   }
   const SignalsWait until_renamed;
   std::vector<std::unique_ptr<PartialFile>> partials;
   for (const FileContent& file : files) {
+    if (file.path == "-") continue;
     partials.push_back(std::make_unique<PartialFile>(file.path, partials.size()));
     partials.back()->Write(file.content);
   }
   for (const auto& partial : partials) partial->Rename();
+  for (const FileContent& file : files) {
+    if (file.path == "-") WriteStandardOutput(file.content);
+  }
 }
 
 void CheckWritable(const std::string& path) {

@@ -120,4 +120,9 @@ void CheckOutputs(const std::vector<Output>& outputs) {
   }
 }
 
+bool UseStandardOutput(const std::vector<Output>& outputs) {
+  return std::any_of(outputs.begin(), outputs.end(),
+                     [](const Output& output) { return output.path == "-"; });
+}
+
 }  // namespace pbnbrdf::cli

@@ -61,6 +61,9 @@ struct Output {
 // written.
 void CheckOutputs(const std::vector<Output>& outputs);
 
+// Whether an output is standard output, which leaves no place there for what a command has to say.
+bool UseStandardOutput(const std::vector<Output>& outputs);
+
 // The subcommands, each in a file of its own.
 Command CompareCommand();
 Command EvalCommand();

@@ -146,7 +146,9 @@ void PrintFit(const std::string& out, const Brdf& material, const Fit& fit, cons
 
 int RunFit(const FitCommandOptions& options, const Arguments&) {
   CheckFlags([&] { ValidateFit(options.setup.problem, options.setup.options); });
-  CheckOutputs({{"out", options.out}, {"summary", options.summary}, {"trace", options.trace}});
+  const std::vector<Output> outputs = {
+      {"out", options.out}, {"summary", options.summary}, {"trace", options.trace}};
+  CheckOutputs(outputs);
   CatchInterrupt();
   const TimeLimit limit(options.setup.options.schedule.max_seconds);
   const std::unique_ptr<Brdf> material = options.material.Open();
@@ -166,7 +168,8 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
     WriteFile(options.summary, JsonText(FitSummaryJson(fit, subject, measures)));
   }
   if (!options.trace.empty()) WriteFile(options.trace, trace);
-  if (!options.quiet) PrintFit(options.out, *material, fit, measures);
+  if (!options.quiet && !UseStandardOutput(outputs))
+    PrintFit(options.out, *material, fit, measures);
   return 0;
 }
 

@@ -33,6 +33,7 @@ struct FitSceneOptions {
     return std::filesystem::path(out_dir) / file;
   }
   std::string SummaryFile() const { return summary.empty() ? InFolder("summary.json") : summary; }
+  bool Prints() const { return !quiet && SummaryFile() != "-"; }
 };
 
 Field SceneField(FitSceneOptions* options) {
@@ -161,7 +162,7 @@ Json RunPlan(const ScenePlan& plan, const FitSceneOptions& options) try {
   const FitSubject subject = {plan.material, Flagfile(options, fit.problem)};
   const std::string file = plan.name + ".safetensors";
   WithMetadata(fit, subject, measures).Write(options.InFolder(file));
-  if (!options.quiet) {
+  if (options.Prints()) {
     std::cout << plan.name << ": " << fit.network.Description() << ", " << fit.summary.seconds
               << " s; " << plan.why << "\n";
   }
@@ -218,7 +219,7 @@ int RunFitScene(const FitSceneOptions& options, const Arguments&) {
                         {"fits", fits},
                         {"version", PBNBRDF_VERSION}};
   WriteFile(options.SummaryFile(), JsonText(summary));
-  if (!options.quiet) std::cout << WorkText("materials", work, kReasons);
+  if (options.Prints()) std::cout << WorkText("materials", work, kReasons);
   return 0;
 }
 

@@ -2,8 +2,10 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <new>
 #include <span>
@@ -11,6 +13,7 @@
 
 #include "base/text.h"
 #include "command_line.h"
+#include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -161,6 +164,14 @@ void SilenceLog(const char* program) {
   }
 }
 
+// What was printed has to arrive: a full disk is an error.
+void FlushStandardOutput() {
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return;
+  Fail("standard output: cannot write", errno == 0 ? "" : StrCat(": ", std::strerror(errno)));
+}
+
 // One line, whatever names and texts are quoted in it.
 void PrintError(std::string message) {
   std::replace_if(
@@ -176,7 +187,9 @@ int main(int argc, char** argv) {
   pbnbrdf::cli::SilenceLog(argv[0]);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
   try {
-    return pbnbrdf::cli::Run({argv + 1, argv + argc});
+    const int status = pbnbrdf::cli::Run({argv + 1, argv + argc});
+    pbnbrdf::cli::FlushStandardOutput();
+    return status;
   } catch (const pbnbrdf::UsageError& error) {
     PrintError(error.what());
     return 2;

@@ -138,19 +138,6 @@ void WriteImages(const RenderCommandOptions& options, const Rendering& rendering
   WriteFiles(files);
 }
 
-// Standard output can't be one of several files that are written at once.
-void CheckImageOutputs(const RenderCommandOptions& options) {
-  const std::vector<Output> beside = {{"png", options.png}, {"summary", options.summary}};
-  std::vector<Output> outputs = {{"out", options.out}};
-  for (const Output& output : beside) {
-    if (!output.path.empty() && options.out == "-") {
-      throw UsageError(StrCat("--", output.flag, ": --out must be a file"));
-    }
-    outputs.push_back(output);
-  }
-  CheckOutputs(outputs);
-}
-
 Rendering RenderScene(const RenderCommandOptions& options, const Scene& scene,
                       RenderOptions render) try {
   const ProgressLine line(options.quiet);
@@ -179,14 +166,18 @@ void PrintSummary(const std::string& out, const Image& image, const RenderSummar
 int RunRender(const RenderCommandOptions& options, const Arguments&) {
   const RenderOptions render = CheckedOptions(options);
   const SceneChanges changes = {options.environment, MaterialChanges(options.materials)};
-  CheckImageOutputs(options);
+  const std::vector<Output> outputs = {
+      {"out", options.out}, {"png", options.png}, {"summary", options.summary}};
+  CheckOutputs(outputs);
   Scene scene = ReadScene(options.scene, changes);
   if (!options.fits.empty()) UseFits(options.fits, &scene.materials);
   CatchInterrupt();
   const Rendering rendering = RenderScene(options, scene, render);
   WriteImages(options, rendering);
   const RenderSummary& summary = rendering.summary;
-  if (!options.quiet && options.out != "-") PrintSummary(options.out, rendering.image, summary);
+  if (!options.quiet && !UseStandardOutput(outputs)) {
+    PrintSummary(options.out, rendering.image, summary);
+  }
   if (summary.dropped_samples > 0) {
     std::cerr << "pbnbrdf: " << summary.dropped_samples
               << " samples were dropped: their radiance was not finite\n";

@@ -241,6 +241,7 @@ AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
   std::vector<Candidate> at_hand;
   std::vector<double> scalars;
   Candidate best;
+  int used = 0;
   for (int n = std::min(lobes, 1); n <= lobes; ++n) {
     const AnalyticFitter fitter(model, n, isotropic);
     if (n == 2) {  // the fit of one lobe, with a second one that is hardly there
@@ -248,12 +249,17 @@ AnalyticFit FitAnalytic(std::span<const BrdfSample> samples, bool isotropic,
       at_hand[0].numbers = fitter.parameters().FromScalars(WithFaintLobe(model, scalars));
     }
     const auto starts = AnalyticStarts(model, n, first, options.starts);
+    Candidate fit;
     WithThreads(options.threads,
-                [&] { best = FitLobes(fitter, options, starts, samples, at_hand); });
+                [&] { fit = FitLobes(fitter, options, starts, samples, at_hand); });
+    const double worth = (1.0 - options.lobe_gain) * best.final_cost;
+    if (n == 2 && options.lobe_gain > 0.0 && !(fit.final_cost < worth)) break;
+    best = std::move(fit);
+    used = n;
     scalars = fitter.parameters().ToBoundedScalars(best.numbers);
   }
   best.seconds = timer.Seconds();
-  return {AnalyticBrdf(model, lobes, scalars), best};
+  return {AnalyticBrdf(model, used, scalars), best};
 }
 
 }  // namespace pbnbrdf

@@ -9,7 +9,7 @@
 
 namespace pbnbrdf {
 
-// An analytic model, a lobe of GGX and a diffuse part, is fitted to the measurements and corrected by them:
+// An analytic model, a lobe of GGX or two and a diffuse part, is fitted to the measurements and corrected by them:
 // the ratio (f + 0.03) / (model + 0.03) is interpolated between them as scattered.h says, and becomes 1 far
 // from them. What a scan in one plane says of directions beside the plane is thus what a lobe that fits the
 // scan has there.

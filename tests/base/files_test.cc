@@ -68,6 +68,19 @@ TEST(Files, SeveralFilesAreReplacedTogetherOrNot) {
   EXPECT_EQ(folder.file_count(), 4u);
 }
 
+TEST(Files, TheModeOfAFileThatIsReplacedStays) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a";
+  WriteFile(path, "old");
+  const auto mine = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+  std::filesystem::permissions(path, mine);
+  WriteFile(path, "new");
+  EXPECT_EQ(std::filesystem::status(path).permissions(), mine);
+  WriteFiles({{path, "newer"}, {folder / "b", "other"}});
+  EXPECT_EQ(std::filesystem::status(path).permissions(), mine);
+  EXPECT_EQ(ReadFile(path, 100), "newer");
+}
+
 TEST(Files, APipeStaysOne) {
   TemporaryFolder folder;
   const std::string path = folder / "pipe";

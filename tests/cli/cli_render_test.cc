@@ -155,8 +155,6 @@ TEST_F(CliRender, Errors) {
   ExpectError(render + "--png=" + Path("out") + out, 2, "--out and --png name the same file");
   ExpectError(render + "--summary=" + Path("out") + out, 2,
               "--out and --summary name the same file");
-  ExpectError(render + "--summary=" + Path("s.json") + " --out=-", 2,
-              "--summary: --out must be a file");
   ExpectError(render + "--material=surfac=ggx:alpha=0.3" + out, 1,
               "sphere.json: materials: 'surfac' isn't known; did you mean 'surface'?");
   ExpectError(render + "--material=surface=none.binary" + out, 1,
@@ -164,6 +162,13 @@ TEST_F(CliRender, Errors) {
   ExpectError(render + "--environment=" + Path("none.exr") + out, 1, "none.exr: no such file");
   ExpectError(render + "--png=" + Path("none/x.png") + out, 1, "cannot write: no folder");
   ExpectError("render --scene=" + Path("none.json") + out, 1, "none.json: no such file");
+}
+
+TEST_F(CliRender, ASummaryOnStandardOutputIsJsonAlone) {
+  const Result result = Run("render --samples_per_pixel=1 --summary=- --scene=" + kScenes +
+                            "sphere.json --out=" + Path("out.exr"));
+  EXPECT_TRUE(json::parse(result.out).contains("seconds")) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(Path("out.exr")));
 }
 
 }  // namespace

@@ -174,5 +174,23 @@ TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
               "is a folder");
 }
 
+TEST_F(Cli, AStandardOutputThatCantBeWrittenIsAnError) {
+  const std::string fit =
+      "fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors");
+  for (const std::string& arguments :
+       {std::string("--help"), std::string("fit --help"), std::string("--version"),
+        std::string("info builtin:spectralon"), fit,
+        "measure --samples=1000 --material=builtin:spectralon --fit=" + Path("a.safetensors")}) {
+    const Result result = Run(arguments + " > /dev/full");
+    EXPECT_EQ(result.status, 1) << arguments;
+    EXPECT_THAT(result.err, StartsWith("pbnbrdf: standard output: cannot write: ")) << arguments;
+  }
+}
+
+TEST_F(Cli, ASummaryOnStandardOutputIsJsonAlone) {
+  const std::string fit = "fit --material=builtin:spectralon" + kQuick + "--summary=- --out=";
+  EXPECT_TRUE(json::parse(Run(fit + Path("a.safetensors")).out).contains("mean_abs_log_error"));
+}
+
 }  // namespace
 }  // namespace pbnbrdf

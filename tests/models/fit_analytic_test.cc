@@ -1,8 +1,11 @@
 #include "pbnbrdf/models/fit_analytic.h"
-#include "pbnbrdf/problem/sampling.h"
 
+#include <random>
+
+#include "base/uniform.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "test_util.h"
 
@@ -88,6 +91,26 @@ TEST(FitAnalytic, TwoLobesFitNoWorseThanOne) {
     const double cost_1 = FitTo(*builtin, phong, Quick(1)).summary.final_cost;
     EXPECT_LE(FitTo(*builtin, phong, Quick(2)).summary.final_cost, cost_1 * (1 + 1e-4));
   }
+}
+
+TEST(FitAnalytic, ASecondLobeThatGainsLittleIsLeftOut) {
+  const AnalyticModel& phong = FindAnalyticModel("phong");
+  AnalyticFitOptions options = Quick(2);
+  options.lobe_gain = 0.1;
+  const AnalyticBrdf one = AnalyticBrdf::FromText("phong:rho_d=0.1,rho_s=0.3,n=20");
+  const AnalyticBrdf two =
+      AnalyticBrdf::FromText("phong:rho_d=0.1,rho_s=0.3,n=20,rho_s_2=0.1,n_2=2000");
+  EXPECT_EQ(FitTo(two, phong, options).brdf.lobes(), 2);
+  // What noise leaves to explain, no lobe can.
+  std::vector<BrdfSample> samples =
+      DrawSamples(one, SampleSet::kTraining, Sampling::kHighlight, kSamples, /*seed=*/1);
+  std::mt19937_64 random(1);
+  for (BrdfSample& sample : samples) {
+    for (double& channel : sample.value) channel *= 0.95 + 0.1 * Uniform(random);
+  }
+  EXPECT_EQ(FitAnalytic(samples, /*isotropic=*/true, phong, options).brdf.lobes(), 1);
+  options.lobe_gain = 0.0;
+  EXPECT_EQ(FitAnalytic(samples, /*isotropic=*/true, phong, options).brdf.lobes(), 2);
 }
 
 TEST(FitAnalytic, IsTheSameToTheBitWhateverTheThreads) {

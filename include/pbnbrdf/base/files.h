@@ -27,7 +27,8 @@ struct FileContent {
 };
 
 // Several regular files, in one folder or more: none is replaced before the new content of all is
-// on the disk. Throws Error; the temporary files are removed. One file may be what WriteFile takes.
+// on the disk. Throws Error; the temporary files are removed. A single one may be what WriteFile takes, and
+// "-" among them is standard output, which comes last.
 void WriteFiles(const std::vector<FileContent>& files);
 
 // Throws Error unless WriteFile(path, ...) has a folder to write to that grants it: asked before a

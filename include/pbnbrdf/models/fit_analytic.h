@@ -31,7 +31,8 @@ struct AnalyticFitOptions {
   int starts = 12;                     // >= 1: from narrow lobes to wide ones; the best ones go on
   int max_iterations = 100;            // >= 1, of the last stage
   double function_tolerance = 1e-5;    // stop when |cost change| < function_tolerance * cost
-  int threads = 0;                     // 0: as many as the machine has
+  double lobe_gain = 0.0;  // a second lobe that lowers the cost by a smaller part is left out
+  int threads = 0;         // 0: as many as the machine has
 
   // Throws Error, naming the field, its value and what it must be.
   void Validate() const;
