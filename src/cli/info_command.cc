@@ -7,6 +7,7 @@
 #include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/metrics/coverage.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -79,13 +80,16 @@ void PrintReciprocity(const Brdf& material) {
             << ", half the mean |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)|\n";
 }
 
-// Of a material that isn't known everywhere.
+// Of measurements: lists of them, and tables that aren't known everywhere or have noise that shows.
 void PrintCoverage(const Brdf& material) {
   const Coverage coverage = MeasureCoverage(material);
-  if (coverage.known == 1.0) return;
   const bool is_list = !material.Measurements().empty();
+  if (!is_list && coverage.known == 1.0 && coverage.negative == 0.0) return;
   std::cout << "  " << (is_list ? "measured near " : "known at ")
-            << std::lround(100.0 * coverage.known) << " % of all pairs of directions\n";
+            << std::lround(100.0 * coverage.known)
+            << " % of all pairs of directions\n  below 0: " << 100.0 * coverage.negative
+            << " % of the values; noise: at most " << coverage.noise
+            << " 1/sr, as far as neighbouring values differ\n";
   if (coverage.in_plane) std::cout << "  " << kInPlaneNote << "\n";
 }
 

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "base/timer.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
+#include "pbnbrdf/metrics/coverage.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "problem/problem_fields.h"
 
@@ -120,6 +121,8 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
           {"reciprocal_floor", ReciprocalFloor(heldout, material)},
           {"measured_part", coverage.known},
           {"measured_in_plane", coverage.in_plane},
+          {"measured_negative", coverage.negative},
+          {"measured_noise", coverage.noise},
           {"cut_short", allowance.samples < options.samples || !allowance.material_albedo},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
@@ -152,6 +155,8 @@ std::string MeasuresText(const Json& measures) {
       {"cut_short",
        "whether there was time for fewer samples only, or not for the material's energy"},
       {"measured_in_plane", "whether only one plane through the normal was measured"},
+      {"measured_negative", "part of the measured values with a channel below 0"},
+      {"measured_noise", "1/sr, at most: by how much neighbouring values differ, in the median"},
       {"rmse", "root mean square error of f cos, 1/sr"},
       {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
       {"hcl", "Helmholtz continuity loss (eq. 9)"},

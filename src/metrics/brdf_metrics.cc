@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include "base/parallel.h"
-#include "base/uniform.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/metrics/color.h"
 
@@ -17,9 +15,6 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDarkLuminance = 0.1;
 constexpr double kPercentile = 0.95;
-constexpr std::size_t kCoveragePairs = 10000;
-// Sine of the angle between a direction and the plane: rounding of text.
-constexpr double kInPlane = 1e-3;
 
 std::vector<Rgb> ValuesAt(std::span<const BrdfSample> samples, const Brdf& brdf) {
   std::vector<DirectionPair> pairs;
@@ -104,18 +99,6 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
   return sum;
 }
 
-// Uniform in solid angle.
-Vec3 RandomDirection(std::mt19937_64& random) {
-  const double theta = std::acos(Uniform(random));
-  return FromSpherical(theta, 2.0 * kPi * Uniform(random));
-}
-
-// Whether both directions are in a plane with the normal.
-bool IsInPlane(const DirectionPair& pair) {
-  const auto& [wi, wo] = pair;
-  return std::abs(wi.x * wo.y - wi.y * wo.x) <= kInPlane * std::hypot(wi.x, wi.y);
-}
-
 }  // namespace
 
 HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& test) {
@@ -155,20 +138,6 @@ double ReciprocalFloor(std::span<const BrdfSample> samples, const Brdf& material
     count += 3;
   }
   return count > 0 ? 0.5 * sum / static_cast<double>(count) : 0.0;
-}
-
-Coverage MeasureCoverage(const Brdf& material) {
-  std::mt19937_64 random(1);
-  std::size_t known = 0;
-  for (std::size_t n = 0; n < kCoveragePairs; ++n) {
-    const Vec3 wi = RandomDirection(random);
-    known += material.IsKnown({wi, RandomDirection(random)});
-  }
-  const std::vector<BrdfSample> measured = material.Measurements();
-  const bool in_plane =
-      !measured.empty() && std::all_of(measured.begin(), measured.end(),
-                                       [](const BrdfSample& s) { return IsInPlane(s.pair); });
-  return {static_cast<double>(known) / kCoveragePairs, in_plane};
 }
 
 ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf& test) {

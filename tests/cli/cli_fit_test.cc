@@ -163,13 +163,13 @@ TEST_F(Cli, MeasureHasExactlyTheDocumentedKeys) {
       EXPECT_EQ(value.is_number(), !key.ends_with("energy")) << key;
     }
   }
-  EXPECT_THAT(keys,
-              testing::UnorderedElementsAre(
-                  "mean_abs_log_error", "error_at_measured", "reciprocal_floor", "measured_part",
-                  "measured_in_plane", "cut_short", "rmse", "hrl", "hcl", "max_directional_albedo",
-                  "energy", "eal", "material_max_directional_albedo", "material_energy",
-                  "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
-                  "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
+  EXPECT_THAT(keys, testing::UnorderedElementsAre(
+                        "mean_abs_log_error", "error_at_measured", "reciprocal_floor",
+                        "measured_part", "measured_in_plane", "measured_negative", "measured_noise",
+                        "cut_short", "rmse", "hrl", "hcl", "max_directional_albedo", "energy",
+                        "eal", "material_max_directional_albedo", "material_energy",
+                        "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
+                        "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
   const Result text = Run("measure --samples=2000 --fit=" + Path("a.safetensors") + material);

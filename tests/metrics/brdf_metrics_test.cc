@@ -3,7 +3,6 @@
 
 #include "brdf/direction_pairs.h"
 #include "pbnbrdf/brdf/half_diff.h"
-#include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/metrics/color.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
@@ -214,33 +213,6 @@ TEST(ColorErrors, NotANumberIsNotHidden) {
       HeldOutSamples(LambertBrdf({0, 0, 0}), 2000, /*seed=*/1), SpottedBrdf(NAN));
   EXPECT_TRUE(std::isnan(errors.delta_e_mean));
   EXPECT_TRUE(std::isnan(errors.delta_e_p95));
-}
-
-// Known where theta_i is below 60 degrees: half of the hemisphere.
-class HalfKnownBrdf final : public SkewedBrdf {
- public:
-  bool IsKnown(const DirectionPair& pair) const override { return pair.wi.z > 0.5; }
-};
-
-TEST(Coverage, IsThePartOfSolidAngles) {
-  EXPECT_EQ(MeasureCoverage(SkewedBrdf()).known, 1.0);
-  EXPECT_EQ(MeasureCoverage(UnknownSkewedBrdf()).known, 0.0);
-  EXPECT_NEAR(MeasureCoverage(HalfKnownBrdf()).known, 0.5, 0.01);
-  EXPECT_FALSE(MeasureCoverage(HalfKnownBrdf()).in_plane);
-}
-
-TEST(Coverage, KnowsScansInAPlane) {
-  ScatteredData data;
-  const auto add = [&](double theta_i, double phi_i, double theta_o, double phi_o) {
-    data.samples.push_back({{FromSpherical(theta_i, phi_i), FromSpherical(theta_o, phi_o)}, {}});
-  };
-  add(0.3, 0.0, 0.5, kPi);
-  add(0.3, kPi, 0.5, kPi + 1e-6);
-  add(0.3, 0.2, 0.5, kPi + 0.2);  // the sample turned
-  add(0.0, 0.0, 0.5, 1.0);
-  EXPECT_TRUE(MeasureCoverage(ScatteredBrdf(data)).in_plane);
-  add(0.3, 0.0, 0.5, kPi + 0.01);
-  EXPECT_FALSE(MeasureCoverage(ScatteredBrdf(data)).in_plane);
 }
 
 }  // namespace

@@ -24,17 +24,6 @@ HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& t
 // reciprocal.
 double ReciprocalFloor(std::span<const BrdfSample> samples, const Brdf& material);
 
-// How much of the hemisphere a material was measured at.
-struct Coverage {
-  // The part of all pairs of directions above the horizon, both uniform in solid angle, at which it is known
-  // (Brdf::IsKnown): near a measurement, if it is a list of them. Within 0.01.
-  double known = 1.0;
-  // Whether it is a list of measurements with both directions always in one plane with the normal.
-  bool in_plane = false;
-};
-
-Coverage MeasureCoverage(const Brdf& material);
-
 // On the same samples the lit colour: what a display shows of the surface under one directional D65
 // light in which a white diffuse surface that faces it is white, pi f cos_i as linear RGB, cut to
 // [0, 1]. 95th percentile: the least value that 95 % of the samples don't exceed.
