@@ -69,12 +69,12 @@ void PrintMetadata(const std::map<std::string, std::string>& metadata) {
   }
 }
 
-// Of a material that isn't reciprocal.
+// Of a material that needn't be reciprocal.
 void PrintReciprocity(const Brdf& material) {
   const auto [hrl, hcl] = MeasureReciprocity(material);
   const std::vector<BrdfSample> samples = HeldOutSamples(material, kSamples, 1);
-  std::cout << "  not reciprocal: Helmholtz reciprocity loss " << hrl
-            << " (eq. 8), continuity loss " << hcl
+  std::cout << (hcl > 0.0 ? "  not reciprocal" : "  reciprocal") << ": Helmholtz reciprocity loss "
+            << hrl << " (eq. 8), continuity loss " << hcl
             << " (eq. 9)\n  least mean absolute log error of a reciprocal fit: "
             << ReciprocalFloor(samples, material)
             << ", half the mean |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)|\n";
