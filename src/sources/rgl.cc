@@ -21,7 +21,7 @@ constexpr double kLastMeasured = 89.9 * kDegree;
 // Of the best estimate: what is added to values before the logarithm, the cubic's share of it, and how fast
 // certainty falls between nodes. A larger share or a faster fall brings fits nearer at measured angles, and
 // farther in pictures (experiments/measured.cc).
-constexpr double kLogOffset = 0.03, kCubicShare = 0.6, kDoubt = 7.0;
+constexpr double kLogOffset = 0.03, kCubicShare = 0.6, kDoubt = 8.0;
 constexpr float kLongestWave = 1e5f;       // nm
 constexpr std::size_t kShownText = 60;     // of a file's own description
 constexpr std::size_t kMostIsotropic = 2;  // phi_i nodes

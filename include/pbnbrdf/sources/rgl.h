@@ -46,7 +46,7 @@ class RglBrdf final : public Brdf {
   // cubic alone.
   std::unique_ptr<Brdf> BestEstimate() const override;
 
-  // 1 at a measured theta_i, less in between: 1 / (1 + (7 d)^2), d the distance to the nearest one as a
+  // 1 at a measured theta_i, less in between: 1 / (1 + (8 d)^2), d the distance to the nearest one as a
   // fraction of the interval.
   double Certainty(const DirectionPair& pair) const override;
   std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override;
