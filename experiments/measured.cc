@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/median.h"
 #include "cpu_timer.h"
 #include "curves.h"
 #include "experiment.h"

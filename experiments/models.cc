@@ -7,8 +7,8 @@
 #include <map>
 #include <memory>
 
+#include "base/median.h"
 #include "base/text.h"
-#include "curves.h"
 #include "experiment.h"
 #include "fit_log.h"
 #include "materials.h"

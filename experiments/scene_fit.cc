@@ -5,8 +5,8 @@
 #include <iterator>
 #include <map>
 
+#include "base/median.h"
 #include "base/text.h"
-#include "curves.h"
 #include "experiment.h"
 #include "fit_log.h"
 #include "materials.h"

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "base/median.h"
 #include "base/text.h"
-#include "curves.h"
 #include "pbnbrdf/base/error.h"
 #include "table.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {

@@ -1,4 +1,5 @@
 #include "curves.h"
+#include "base/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,13 +24,6 @@ double TimeToError(const Curve& curve, double error) {
   const auto reached = std::find_if(curve.begin(), curve.end(),
                                     [&](const CurvePoint& point) { return point.error <= error; });
   return reached == curve.end() ? kInfinity : reached->seconds;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 Curve MedianCurve(const std::vector<Curve>& curves, int count) {

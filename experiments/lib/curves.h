@@ -18,9 +18,6 @@ double ErrorAt(const Curve& curve, double seconds);
 // When the error is first at most `error`; infinite if it never is.
 double TimeToError(const Curve& curve, double error);
 
-// The mean of the two in the middle if their number is even; NaN of none.
-double Median(std::vector<double> values);
-
 // The median of the curves' errors at `count` >= 2 times, in equal ratios from the first point of
 // any to the last of any; from where more than half of the curves have begun.
 Curve MedianCurve(const std::vector<Curve>& curves, int count);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "curves.h"
+#include "base/median.h"
 #include "pbnbrdf/base/error.h"
 #include "table.h"
 

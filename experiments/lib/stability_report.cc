@@ -7,7 +7,7 @@
 #include <regex>
 #include <sstream>
 
-#include "curves.h"
+#include "base/median.h"
 #include "pbnbrdf/base/error.h"
 #include "table.h"
 

@@ -23,7 +23,7 @@ std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown error
 void WriteStandardOutput(std::string_view content) {
   errno = 0;
   if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
-      std::fflush(stdout) != 0) {
+      std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     Fail("standard output: cannot write: ", Reason());
   }
 }

@@ -281,7 +281,6 @@ AlbedoQuadrature::AlbedoQuadrature(int n_theta, int n_phi)
 
 AlbedoQuadrature AlbedoQuadrature::OnMerlRows(int n_theta, int n_phi) {
   AlbedoQuadrature quadrature(n_theta, n_phi);
-  quadrature.on_merl_rows_ = true;
   for (int row = 0; row < kMerlRows; ++row) {
     quadrature.row_begin_.push_back(quadrature.rows_.size());
     quadrature.AddCell(MerlRowAngle(row), MerlRowAngle(row + 1), /*power=*/1,
@@ -299,7 +298,7 @@ const GaussLegendre& AlbedoQuadrature::RuleOfRow(int row) const {
 
 // The rule on theta_h = first + (last - first) x^power, power 1 or 3.
 void AlbedoQuadrature::AddCell(double first, double last, int power, const GaussLegendre& rule,
-                               std::vector<Tilt>* tilts) const {
+                               std::vector<Tilt>* tilts) {
   for (std::size_t t = 0; t < rule.nodes.size(); ++t) {
     const double x = rule.nodes[t], below = power == 1 ? 1.0 : x * x;
     const double theta_h = first + (last - first) * below * x;
@@ -325,7 +324,7 @@ void AlbedoQuadrature::AddPart(const Vec3& wi, int k, std::vector<AlbedoNode>* n
     }
   };
   std::vector<Tilt> rest;
-  if (on_merl_rows_) {
+  if (!rows_.empty()) {
     int row = 0;
     while (row < kMerlRows && MerlRowAngle(row + 1) <= theta_max) ++row;
     add(std::span(rows_).first(row_begin_[static_cast<std::size_t>(row)]));

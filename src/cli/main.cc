@@ -2,10 +2,8 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <new>
 #include <span>
@@ -13,7 +11,7 @@
 
 #include "base/text.h"
 #include "command_line.h"
-#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/files.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -164,14 +162,6 @@ void SilenceLog(const char* program) {
   }
 }
 
-// What was printed has to arrive: a full disk is an error.
-void FlushStandardOutput() {
-  errno = 0;
-  std::cout.flush();
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return;
-  Fail("standard output: cannot write", errno == 0 ? "" : StrCat(": ", std::strerror(errno)));
-}
-
 // One line, whatever names and texts are quoted in it.
 void PrintError(std::string message) {
   std::replace_if(
@@ -188,7 +178,8 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
   try {
     const int status = pbnbrdf::cli::Run({argv + 1, argv + argc});
-    pbnbrdf::cli::FlushStandardOutput();
+    std::cout.flush();
+    pbnbrdf::WriteFile("-", "");  // fails if what was printed before didn't arrive
     return status;
   } catch (const pbnbrdf::UsageError& error) {
     PrintError(error.what());

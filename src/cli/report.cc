@@ -25,8 +25,7 @@ constexpr double kAlbedoValues = 1e6;       // about what the albedos of a mater
 constexpr double kMinSamples = 5000.0;
 // How often the material and the fit are evaluated for each held-out sample, and the part of the time for that.
 constexpr double kEvaluations = 3.0, kErrorsPart = 0.4;
-constexpr double kAlbedoPart =
-    0.25;  // of the time, for the albedos of the material: about the rest
+constexpr double kAlbedoPart = 0.25;  // of the time, for the albedos of the material
 // Of the angles that the check of a network's energy has, a few tell the time that it takes.
 constexpr int kTrialAngles = 10, kTrials = 4;
 constexpr double kChecksPerAngle = 1.7;  // with refinements and reciprocity
@@ -92,8 +91,8 @@ double SecondsOfChecks(const NetworkShape& shape) {
   const double trials = static_cast<double>(grid.angles) / kTrialAngles;
   grid.angles = kTrialAngles;
   grid.refinements = 0;
-  double least =
-      std::numeric_limits<double>::infinity();  // other work on the machine counts for nothing
+  // Other work on the machine counts for nothing.
+  double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kTrials; ++k) {
     const Timer timer;
     AlbedoProfile(network, grid);
@@ -123,7 +122,6 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
           {"measured_in_plane", coverage.in_plane},
           {"measured_negative", coverage.negative},
           {"measured_noise", coverage.noise},
-          {"cut_short", allowance.samples < options.samples || !allowance.material_albedo},
           {"rmse", errors.rmse},
           {"hrl", reciprocity.hrl},
           {"hcl", reciprocity.hcl},
@@ -141,7 +139,8 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
           {"dark_hue_chroma_p95", colors.dark_hue_chroma_p95},
           {"parameters", parameters},
           {"samples", errors.samples},
-          {"dark_samples", colors.dark_samples}};
+          {"dark_samples", colors.dark_samples},
+          {"cut_short", allowance.samples < options.samples || !allowance.material_albedo}};
 }
 
 std::string MeasuresText(const Json& measures) {
@@ -152,8 +151,6 @@ std::string MeasuresText(const Json& measures) {
       {"reciprocal_floor",
        "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
       {"measured_part", "of all pairs of directions: where the material is known, or nearly"},
-      {"cut_short",
-       "whether there was time for fewer samples only, or not for the material's energy"},
       {"measured_in_plane", "whether only one plane through the normal was measured"},
       {"measured_negative", "part of the measured values with a channel below 0"},
       {"measured_noise", "1/sr, at most: by how much neighbouring values differ, in the median"},
@@ -173,7 +170,8 @@ std::string MeasuresText(const Json& measures) {
       {"dark_hue_chroma_p95", "its 95th percentile"},
       {"parameters", "numbers that the fit stores"},
       {"samples", "number of held-out samples"},
-      {"dark_samples", "number of those with a lit luminance of at most 0.1"}};
+      {"dark_samples", "number of those with a lit luminance of at most 0.1"},
+      {"cut_short", "whether there was time for fewer samples, or not for the material's energy"}};
   std::ostringstream text;
   for (const auto& [key, meaning] : kMeanings) {
     const auto& value = measures.at(key);

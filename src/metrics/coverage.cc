@@ -1,12 +1,15 @@
 #include "pbnbrdf/metrics/coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "base/median.h"
 #include "base/parallel.h"
 #include "base/uniform.h"
 #include "pbnbrdf/brdf/half_diff.h"
@@ -40,10 +43,7 @@ bool HasNegative(const Rgb& value) {
 
 // The standard deviation of normally distributed numbers, by the median of their absolute values.
 double Deviation(std::vector<double> absolute) {
-  if (absolute.empty()) return 0.0;
-  const auto middle = absolute.begin() + static_cast<std::ptrdiff_t>(absolute.size() / 2);
-  std::nth_element(absolute.begin(), middle, absolute.end());
-  return *middle / kNormalMedian;
+  return absolute.empty() ? 0.0 : Median(std::move(absolute)) / kNormalMedian;
 }
 
 // Of measurements and the nearest other ones.

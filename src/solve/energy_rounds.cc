@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -201,11 +202,11 @@ void ConserveEnergy(const FitProblem& problem, Training* training) {
     training->LimitTo(1.0);
   }
   if (energy.max_albedo < kClearlyConserved || !training->options().certify_energy) return;
-  const Correction correction = LowerToConserve(
+  Correction correction = LowerToConserve(
       problem.Shape(), [training] { return training->MayContinue(); }, &training->weights());
   energy.correction = correction.change;
   energy.max_albedo = correction.max_albedo;
-  energy.profile = correction.profile;
+  energy.profile = std::move(correction.profile);
   if (!before.weights.empty()) TakeBetter(before, training);
 }
 

@@ -26,8 +26,8 @@ constexpr std::size_t kStochasticCostSamples =
 // them hardly more: seen on measured materials, for half of the time.
 constexpr std::size_t kCurvatureGrowth = 4;
 constexpr double kMinPart = 0.5;  // of the time, that a reserve leaves
-constexpr double kLeadTime =
-    0.5;  // of the last iteration's time: the next one ends as often before the limit as after
+// Of the last iteration's time, kept for the next one, which so ends as often before the limit as after.
+constexpr double kLeadTime = 0.5;
 constexpr double kRoundingShare = 0.01;  // FitSummary::precision_limited
 
 constexpr std::size_t kStartSamples = 1024;  // on which a start is judged
@@ -205,7 +205,6 @@ double Training::Minimize(int max_iterations,
   stage.max_iterations = max_iterations;
   stage.curvature_samples = curvature_samples_;
   stage.function_tolerance = options_.schedule.function_tolerance;
-  // Less what the last iteration took, as the next one will take as long.
   double last = SecondsLeft();
   stage.seconds_left = [this, last]() mutable {
     const double before = last;

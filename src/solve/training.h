@@ -34,9 +34,6 @@ class Training {
   // the last `reserve` seconds of them, unless these are most of them.
   void LimitTo(double part, double reserve = 0.0);
 
-  // Until the clock ends the fit.
-  double SecondsLeft() const;
-
   // Whether neither the user nor the clock has ended the fit.
   bool MayContinue() const;
 
@@ -61,6 +58,7 @@ class Training {
   void Finish();
 
  private:
+  double SecondsLeft() const;  // until the clock ends the fit
   bool AgreesInDouble();
 
   Timer timer_, wall_timer_;  // without what isn't to be counted, and all

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/median.h"
+
 namespace pbnbrdf {
 namespace {
 
@@ -12,14 +14,6 @@ std::optional<double> Deviation(double sigma, const BrdfSample& sample) {
   const double f = (sample.value[0] + sample.value[1] + sample.value[2]) / 3.0;
   if (!(cos_i > 0.0 && 1.0 + f * cos_i > 0.0)) return std::nullopt;
   return sigma * cos_i / (1.0 + f * cos_i);
-}
-
-// Which isn't empty.
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 }  // namespace

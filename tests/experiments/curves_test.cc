@@ -23,13 +23,6 @@ TEST(TimeToError, IsThatOfTheFirstPointAtMostTheError) {
   EXPECT_EQ(TimeToError(rises_again, 0.2), 1.0);
 }
 
-TEST(Median, OfEvenAndOddNumbers) {
-  EXPECT_EQ(Median({3.0, 1.0, 2.0}), 2.0);
-  EXPECT_EQ(Median({4.0, 1.0, 2.0, 3.0}), 2.5);
-  EXPECT_EQ(Median({1.0, 1.0, INFINITY}), 1.0);
-  EXPECT_TRUE(std::isnan(Median({})));
-}
-
 TEST(MedianCurve, OfOneCurveIsThatCurve) {
   const Curve median = MedianCurve({kFalling}, 5);
   ASSERT_EQ(median.size(), 5u);

@@ -52,13 +52,12 @@ class AlbedoQuadrature {
     double weight;  // dtheta_h
   };
 
-  void AddCell(double first, double last, int power, const GaussLegendre& rule,
-               std::vector<Tilt>* tilts) const;
+  static void AddCell(double first, double last, int power, const GaussLegendre& rule,
+                      std::vector<Tilt>* tilts);
   const GaussLegendre& RuleOfRow(int row) const;
 
   const GaussLegendre *x_, *x_of_first_rows_;
-  bool on_merl_rows_ = false;
-  std::vector<Tilt> rows_;                 // of whole rows, if on MERL rows
+  std::vector<Tilt> rows_;                 // of whole rows of a MERL table; else none
   std::vector<std::size_t> row_begin_;     // in rows_, of each row and of the end
   std::vector<double> phi_, phi_weights_;  // phi_h from the plane of incidence on, radians
 };

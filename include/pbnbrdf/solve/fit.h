@@ -96,8 +96,8 @@ struct EnergySummary {
   int rounds = 0;                 // stages with the term; 0: it wasn't needed
   std::size_t strata = 0;         // of incident directions, in the last of them
   double correction = 0.0;        // mean change of log(1 + f) by the final correction
-  std::vector<IncidentAlbedo>
-      profile;  // of the network's albedos, as MeasureEnergy has them, or none
+  // The network's albedos in the end, as MeasureEnergy has them; none if they weren't checked so closely.
+  std::vector<IncidentAlbedo> profile;
   EnergyWork work;
 };
 
