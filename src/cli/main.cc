@@ -178,8 +178,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
   try {
     const int status = pbnbrdf::cli::Run({argv + 1, argv + argc});
-    std::cout.flush();
-    pbnbrdf::WriteFile("-", "");  // fails if what was printed before didn't arrive
+    pbnbrdf::WriteFile("-", "");  // fails if what was printed before doesn't arrive
     return status;
   } catch (const pbnbrdf::UsageError& error) {
     PrintError(error.what());
