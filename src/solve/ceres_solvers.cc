@@ -99,7 +99,7 @@ class CostAndGradient final : public ceres::FirstOrderFunction {
 StageResult SolveByTrustRegion(ceres::Problem* problem, const StageOptions& options) {
   IterationCallback callback(options);
   auto ceres_options = CommonOptions<ceres::Solver::Options>(options, &callback);
-  ceres_options.initial_trust_region_radius = kFirstTrustRegionRadius;
+  ceres_options.initial_trust_region_radius = options.first_radius;
   ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   ceres_options.use_nonmonotonic_steps = true;  // halves the iterations; the best weights are kept
   ceres_options.max_num_consecutive_invalid_steps = kMaxInvalidSteps;
@@ -107,7 +107,9 @@ StageResult SolveByTrustRegion(ceres::Problem* problem, const StageOptions& opti
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, problem, &summary);
   StageResult result = ReadSummary(summary, callback);
+  result.last_radius = options.first_radius;
   for (const ceres::IterationSummary& iteration : summary.iterations) {
+    result.last_radius = iteration.trust_region_radius;
     if (iteration.iteration == 0 || iteration.step_is_successful) continue;
     ++(iteration.step_is_valid ? result.rejected_steps : result.failed_factorizations);
   }

@@ -134,13 +134,14 @@ void RunRounds(double weight, EnergyConstraints* constraints, Training* training
   double max_over_balance = in_haste ? kOverBalance : 1.0;
   const int last = summary.iterations + training->options().schedule.max_iterations;
   while (energy.rounds < kMaxRounds && summary.iterations < last && training->MayContinue()) {
-    const double error = training->validation().MeanAbsLogError(training->weights().data());
+    const double error = training->ValidationError();
     if (CorrectionOf(energy.max_albedo) <= kSmallCorrection * error) break;
     constraints->Exchange();
     const double grown = energy.rounds > 0 ? kWeightGrowth : 1.0;
     weight = std::min(weight * grown,
                       max_over_balance * BalancedWeight(constraints->strata(), training));
     training->SetEnergy(weight, constraints->strata());
+    const std::vector<double> before = training->weights();
     RunStages(training,
               std::min(iterations * training->solver().traits.pace, last - summary.iterations));
     const double excess = energy.max_albedo - 1.0;
@@ -149,6 +150,7 @@ void RunRounds(double weight, EnergyConstraints* constraints, Training* training
     max_over_balance = fell ? kOverBalance : kWeightGrowth * max_over_balance;
     energy.strata = constraints->strata().size();
     ++energy.rounds;
+    if (training->weights() == before) break;  // nor would a larger weight find a step
   }
   if (!in_haste) return;
   summary.termination = ended;

@@ -50,6 +50,10 @@ Fields OptionFields(FitOptions* options) {
       "maximum number of iterations (adam: epochs), and as many again with the energy term"));
   fields.AddCommon(Number("max_seconds", &schedule->max_seconds, Above(0.0),
                           "maximum time for the fit, seconds"));
+  fields.Add(Number(
+      "error_tolerance", &schedule->error_tolerance, Between(0.0, 1.0),
+      "stop when 25 iterations lower the error of unseen samples by a smaller part than this; "
+      "errors below 1e-4 count as 1e-4"));
   fields.Add(Number("function_tolerance", &schedule->function_tolerance, AtLeast(0.0),
                     "stop when an iteration lowers the cost by a smaller part than this"));
   fields.Add(Switch("certify_energy", &options->certify_energy,

@@ -92,7 +92,8 @@ class LevenbergMarquardt {
         x_(*best),
         trial_(*best),
         step_(best->size()),
-        cholesky_(static_cast<int>(best->size())) {}
+        cholesky_(static_cast<int>(best->size())),
+        radius_(options.first_radius) {}
 
   StageResult Run() {
     if (!Linearize(x_, &at_)) {
@@ -110,7 +111,8 @@ class LevenbergMarquardt {
       const bool has_step = ComputeStep(&predicted);
       if (has_step) cost = objective_->Cost(trial_.data());
       const double quality = judge.Quality(cost, predicted);
-      const double change = std::abs(at_.cost - cost);
+      // Both: steps of part of the curvature may by chance neither raise nor lower the cost.
+      const double change = std::max(std::abs(at_.cost - cost), predicted);
       if (!(quality > kMinDecrease)) {
         ++(has_step ? result_.rejected_steps : result_.failed_factorizations);
         if (!has_step && objective_->SumCurvatureInDouble()) {
@@ -140,6 +142,8 @@ class LevenbergMarquardt {
     }
     return result_;
   }
+
+  double radius() const { return radius_; }
 
  private:
   // J'J from another part of the samples each time.
@@ -273,7 +277,7 @@ class LevenbergMarquardt {
   Linearization at_, next_;
   Cholesky cholesky_;
   std::size_t linearizations_ = 0;
-  double radius_ = kFirstTrustRegionRadius, max_radius_ = kMaxRadius, shrink_ = 2.0;
+  double radius_, max_radius_ = kMaxRadius, shrink_ = 2.0;
   StageResult result_;
 };
 
@@ -282,7 +286,10 @@ class LevenbergMarquardt {
 // Diverged if the objective isn't finite at the start; converged at once where its gradient is 0.
 StageResult MinimizeLm(const StageInput& input, const StageOptions& options,
                        std::vector<double>* weights) {
-  return LevenbergMarquardt(input.objective, input.options.acceleration, options, weights).Run();
+  LevenbergMarquardt solver(input.objective, input.options.acceleration, options, weights);
+  StageResult result = solver.Run();
+  result.last_radius = solver.radius();
+  return result;
 }
 
 }  // namespace pbnbrdf

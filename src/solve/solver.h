@@ -28,6 +28,9 @@ struct StageOptions {
   int max_iterations = 0;
   std::size_t curvature_samples = std::numeric_limits<std::size_t>::max();  // fit.h
   double function_tolerance = 0.0;  // stop when |cost change| < function_tolerance * cost
+  // Of Levenberg-Marquardt's trust region. A later stage starts with that of the stage before: with the
+  // first one it would take a dozen iterations to regain it.
+  double first_radius = kFirstTrustRegionRadius;
   std::function<double()> seconds_left;
   // Called after each iteration, the weights being the best so far; false stops.
   std::function<bool(int iteration, double cost)> on_iteration;
@@ -40,6 +43,7 @@ struct StageResult {
   // damped J'J didn't factor or something wasn't finite, and those whose step was too poor to take.
   int failed_factorizations = 0;
   int rejected_steps = 0;
+  double last_radius = kFirstTrustRegionRadius;  // of Levenberg-Marquardt's trust region
   Termination termination = Termination::kConverged;
   std::string message;  // why it stopped, with the numbers
 };

@@ -22,8 +22,10 @@ class Training {
   FitSummary& summary() { return summary_; }
   std::vector<double>& weights() { return weights_; }
 
-  // On samples that no solver sees.
+  // On samples that no solver sees; and the cost and the mean absolute log error there.
   Objective& validation() { return *validation_; }
+  double ValidationCost() { return validation_->Cost(weights_.data()); }
+  double ValidationError() { return validation_->MeanAbsLogError(weights_.data()); }
 
   // Starts at the given weights, or at random ones. Throws Error if these lead nowhere.
   void Start();
@@ -40,10 +42,17 @@ class Training {
   bool HasAllSamples() const { return samples_.size() == max_samples_; }
   void TakeMoreSamples();
 
-  // Whether J'J is summed over a part of the samples, and may be over more of them.
+  // Whether J'J is summed over a part of the samples, and may be over more of them: not with the energy
+  // term, whose rounds needn't be exact.
   bool HasPartOfCurvature() const;
+  // Of how many times as many samples as at first.
+  std::size_t CurvatureGrowth() const {
+    return curvature_samples_ / options_.schedule.curvature_samples;
+  }
+  // Of twice as many, and in double precision: the steps that it is wanted for are long.
   void TakeMoreCurvature();
 
+  bool HasEnergy() const { return problem_.terms.EnergyWeight() > 0.0; }
   // Of the energy term, from now on.
   void SetEnergy(double weight, std::vector<EnergyStratum> strata);
 
@@ -72,7 +81,8 @@ class Training {
   std::vector<EnergyStratum> strata_;
   std::unique_ptr<Objective> objective_, validation_, heldout_;
   std::size_t curvature_samples_;
-  double limit_;  // seconds
+  double radius_ = kFirstTrustRegionRadius;  // of the next stage's trust region
+  double limit_;                             // seconds
   std::vector<double> weights_;
   FitSummary summary_;
 };
