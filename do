@@ -6,7 +6,7 @@ cd "$(dirname "$0")"
 build=build
 packages="ccache clang-format-14 cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libembree-dev
           libgmock-dev libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libopenexr-dev libpng-dev
-          libtbb-dev ninja-build nlohmann-json3-dev pkgconf"
+          libtbb-dev libzip-dev ninja-build nlohmann-json3-dev pkgconf"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi

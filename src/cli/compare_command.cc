@@ -1,4 +1,5 @@
 // pbnbrdf compare
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -57,6 +58,8 @@ constexpr char kLpipsMeaning[] = "shown images, features of AlexNet; 0 if equal"
 
 struct Measured {
   ImageErrors errors;
+  PixelRegion region;           // that was compared
+  bool is_part;                 // of the images
   std::optional<double> lpips;  // if it is asked for
 };
 
@@ -68,6 +71,10 @@ Json ToJson(const Measured& measured) {
     if (std::isinf(value)) json[measure.key] = nullptr;  // JSON has no infinity
   }
   if (measured.lpips) json["lpips"] = *measured.lpips;
+  if (measured.is_part) {
+    const PixelRegion& region = measured.region;
+    json["region"] = {region.left, region.top, region.width(), region.height()};
+  }
   return json;
 }
 
@@ -81,6 +88,10 @@ void PrintText(const Measured& measured) {
   if (measured.lpips) print("lpips", *measured.lpips, kLpipsMeaning);
   std::cout << "Shown: sRGB of " << measured.errors.exposure
             << " times the linear value, cut to [0, 1].\n";
+  if (!measured.is_part) return;
+  std::cout << "Compared where both files have pixels: " << measured.region.width() << " x "
+            << measured.region.height() << " from (" << measured.region.left << ", "
+            << measured.region.top << ").\n";
 }
 
 // What the package calls the convolutions: AlexNet's, cut into slices.
@@ -129,15 +140,43 @@ double ShownLpips(const Image& reference, const Image& test, double exposure,
   return About(file, [&] { return Lpips(shown_reference, shown_test, weights); });
 }
 
+// Where both files have pixels. Throws Error if that is nowhere, or if they place the image differently.
+PixelRegion CommonRegion(const StoredImage& reference, const StoredImage& test,
+                         const std::string& reference_path, const std::string& test_path) {
+  if (reference.left != test.left || reference.top != test.top) {
+    Fail(test_path, ": its display window begins at (", test.left, ", ", test.top, "), that of ",
+         reference_path, " at (", reference.left, ", ", reference.top, ")");
+  }
+  const PixelRegion &a = reference.stored, &b = test.stored;
+  const PixelRegion both = {std::max(a.left, b.left), std::max(a.top, b.top),
+                            std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
+  if (both.width() <= 0 || both.height() <= 0) {
+    Fail(test_path, ": nowhere do both this file and ", reference_path, " have pixels");
+  }
+  return both;
+}
+
+Image Part(Image image, const PixelRegion& region) {
+  const bool is_all = region.width() == image.width && region.height() == image.height;
+  return is_all ? std::move(image) : Crop(image, region);
+}
+
 // Measures the two images, and writes the map of errors if it is asked for.
 Measured Compare(const CompareOptions& options, const std::string& reference_path,
                  const std::string& test_path) {
   std::optional<LpipsWeights> lpips;
   if (!options.lpips.empty()) lpips = ReadLpipsWeights(options.lpips);
-  const Image reference = OpenImage(reference_path), test = OpenImage(test_path);
-  CheckComparable(reference, test, reference_path, test_path);
+  StoredImage reference_file = OpenStoredImage(reference_path);
+  StoredImage test_file = OpenStoredImage(test_path);
+  CheckComparable(reference_file.image, test_file.image, reference_path, test_path);
+  const PixelRegion region = CommonRegion(reference_file, test_file, reference_path, test_path);
+  const bool is_part =
+      region.width() < reference_file.image.width || region.height() < reference_file.image.height;
+  const Image reference = Part(std::move(reference_file.image), region),
+              test = Part(std::move(test_file.image), region);
+  if (is_part) CheckComparable(reference, test, reference_path, test_path);
   if (lpips) CheckLargeEnoughForLpips(reference, reference_path);
-  Measured measured{CompareImages(reference, test), std::nullopt};
+  Measured measured{CompareImages(reference, test), region, is_part, std::nullopt};
   if (lpips) {
     measured.lpips = ShownLpips(reference, test, measured.errors.exposure, *lpips, options.lpips);
   }
@@ -181,7 +220,8 @@ of the reference's luminance, and cut to [0, 1]; psnr, ssim and lpips compare th
 hdr_flip covers exposures from one that suits the reference's brightest pixel to one that suits its
 median, so that highlights count.
 JSON keys: mae mse rmse psnr ssim flip hdr_flip delta_e_2000, and lpips with --lpips; psnr is null
-if the shown images are equal.
+if the shown images are equal; region (left, top, width, height) if only a part was compared.
+OpenEXR files of different data windows are compared where both have pixels.
 lpips is LPIPS 0.1 with AlexNet (Zhang et al. 2018), for images of at least 31 x 31. The weights
 don't come with this program; the Python package lpips has them:
   import lpips, safetensors.torch; w = lpips.LPIPS(net='alex').state_dict()

@@ -47,7 +47,7 @@ inline constexpr char kSourceNotes[] =
                                ggx:f0=1/0.78/0.34,alpha=0.2; pbnbrdf info models: lists them
   FILE.json                    an analytic model that pbnbrdf fit-model wrote
   FILE.safetensors             a network that pbnbrdf fit wrote
-  FILE.h5                      a network of NBRDF (Sztrajman et al. 2021), weights or a whole model
+  FILE.h5, FILE.keras          a network of NBRDF (Sztrajman et al. 2021), weights or a whole model
                                that Keras saved
   BASEfc1.npy                  the same as NumPy files: BASE and fc1, fc2, fc3, b1, b2 or b3, and
                                .npy

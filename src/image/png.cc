@@ -62,7 +62,8 @@ bool ReadHeader(Reader& reader) {
   png_read_info(reader.png, reader.info);
   png_set_expand(reader.png);
   png_set_gray_to_rgb(reader.png);
-  png_set_strip_alpha(reader.png);
+  png_color_16 black = {};
+  png_set_background(reader.png, &black, PNG_BACKGROUND_GAMMA_SCREEN, 0, 1.0);
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
   return true;

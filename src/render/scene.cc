@@ -137,7 +137,7 @@ class SceneReader {
       for (const JsonValue& light : json.At("lights").Elements()) ReadLight(light);
     }
     if (!scene_.environment && !changes_.environment.empty()) {
-      scene_.environment = EnvironmentMap(ReadExr(changes_.environment), 0.0, 1.0);
+      scene_.environment = EnvironmentMap(ReadLatLongExr(changes_.environment), 0.0, 1.0);
     }
     return std::move(scene_);
   }
@@ -238,8 +238,8 @@ class SceneReader {
   }
 
   Image EnvironmentImage(const JsonValue& json) const {
-    if (!changes_.environment.empty()) return ReadExr(changes_.environment);
-    if (json.Has("file")) return ReadExr(PathOf(json.At("file")));
+    if (!changes_.environment.empty()) return ReadLatLongExr(changes_.environment);
+    if (json.Has("file")) return ReadLatLongExr(PathOf(json.At("file")));
     if (json.Has("sky")) return SkyImage(ReadSky(json.At("sky")));
     return ConstantImage(json.At("radiance").Color());
   }

@@ -26,12 +26,15 @@ constexpr double kFineError = 1e-4;  // which no picture shows
 
 // Once all samples are in, J'J of more of them makes better steps, which cost more: worth it where the
 // cost of unseen samples has fallen by less than kPoorFall over kSlowIterations, up to kSureGrowth times as
-// many. Beyond, only where the last doubling took kWorthwhileFall off an error above kFineError, in no more
-// than kWorthwhileIterations: as with narrow highlights; on measured materials it is twice the time for 3 %.
+// many. Beyond, it pays for some narrow highlights, and hardly for measured materials: so only where the last
+// doubling took kWorthwhileFall off an error above kFineError in no more than kWorthwhileIterations, and
+// for as long as the error falls by kDearFall over kDearIterations; then it is kSureGrowth for good.
 constexpr double kPoorFall = 0.2;
 constexpr std::size_t kSureGrowth = 4;
 constexpr double kWorthwhileFall = 0.3;
 constexpr std::size_t kWorthwhileIterations = 50;
+constexpr std::size_t kDearIterations = 12;
+constexpr double kDearFall = 0.1;
 
 // Whether a number that is watched has all but ceased to fall.
 class Slowdown {
@@ -52,7 +55,7 @@ class Slowdown {
 };
 
 // Why a stage ended; kNone: the solver ended it.
-enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kNoGain };
+enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kIsTooDear, kNoGain };
 
 class Stages {
  public:
@@ -68,7 +71,10 @@ class Stages {
         training_.TakeMoreSamples();
       } else if (end == End::kWantsCurvature) {
         error_before_ = training_.ValidationError();
-        training_.TakeMoreCurvature();
+        training_.GrowCurvature(2 * training_.CurvatureGrowth());
+      } else if (end == End::kIsTooDear) {
+        max_growth_ = kSureGrowth;
+        training_.GrowCurvature(kSureGrowth);
       } else {
         return;
       }
@@ -78,6 +84,7 @@ class Stages {
  private:
   // What has ceased to fall, and after how many iterations of a stage.
   struct Signs {
+    bool is_dear = false;
     std::size_t iterations = 0;
     bool is_slow = true, is_poor = true, is_idle = true;
     double overfit = 1.0;  // the cost of unseen samples over that of the training samples
@@ -89,6 +96,7 @@ class Stages {
       const bool wants = signs.is_idle || (signs.is_slow && signs.overfit >= kOverfit);
       return wants ? End::kWantsSamples : End::kNone;
     }
+    if (signs.is_dear && training_.CurvatureGrowth() > kSureGrowth) return End::kIsTooDear;
     if (signs.is_poor && IsCurvatureWorthwhile(signs.iterations)) return End::kWantsCurvature;
     return signs.is_idle ? End::kNoGain : End::kNone;
   }
@@ -96,6 +104,7 @@ class Stages {
   bool IsCurvatureWorthwhile(std::size_t iterations) {
     if (!training_.HasPartOfCurvature()) return false;
     if (training_.CurvatureGrowth() < kSureGrowth) return true;
+    if (training_.CurvatureGrowth() >= max_growth_) return false;
     const double error = training_.ValidationError();
     return iterations <= kWorthwhileIterations && error > kFineError &&
            error < (1.0 - kWorthwhileFall) * error_before_;
@@ -107,6 +116,7 @@ class Stages {
     const double tolerance = training_.options().schedule.error_tolerance;
     Slowdown slow(pace * kSlowIterations, kSlowFall), poor(pace * kSlowIterations, kPoorFall);
     Slowdown idle(pace * kIdleIterations, tolerance);
+    Slowdown dear(pace * kDearIterations, kDearFall);
     End end = End::kNone;
     const int before = training_.summary().iterations;
     training_.Minimize(max_iterations, [&](int iteration, double cost) {
@@ -118,8 +128,9 @@ class Stages {
       signs.overfit = validation / cost;
       signs.is_slow = slow.Observe(cost);
       signs.is_poor = poor.Observe(validation);
-      signs.is_idle = idle.Observe(
-          training_.HasEnergy() ? validation : training_.ValidationError() + kFineError);
+      const double error = training_.ValidationError();
+      signs.is_idle = idle.Observe(training_.HasEnergy() ? validation : error + kFineError);
+      signs.is_dear = dear.Observe(error);
       end = Next(signs);
       return end == End::kNone;
     });
@@ -138,6 +149,7 @@ class Stages {
 
   Training& training_;
   double error_before_ = std::numeric_limits<double>::infinity();  // J'J's last growth
+  std::size_t max_growth_ = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace

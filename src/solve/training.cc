@@ -21,8 +21,7 @@ constexpr std::size_t kHeldOutSamples = 32768;
 constexpr std::uint64_t kHeldOutSeed = 1;
 
 constexpr std::size_t kStochasticCostSamples =
-    16384;  // whose cost is watched while minibatches run
-constexpr std::size_t kCurvatureGrowth = 2;
+    16384;                        // whose cost is watched while minibatches run
 constexpr double kMinPart = 0.5;  // of the time, that a reserve leaves
 // Of the last iteration's time, kept for the next one, which so ends as often before the limit as after.
 constexpr double kLeadTime = 0.5;
@@ -185,8 +184,8 @@ bool Training::HasPartOfCurvature() const {
   return solver_.traits.splits_curvature && !HasEnergy() && curvature_samples_ < samples_.size();
 }
 
-void Training::TakeMoreCurvature() {
-  curvature_samples_ *= kCurvatureGrowth;
+void Training::GrowCurvature(std::size_t times) {
+  curvature_samples_ = times * options_.schedule.curvature_samples;
   objective_->SumCurvatureInDouble();
 }
 

@@ -49,8 +49,8 @@ class Training {
   std::size_t CurvatureGrowth() const {
     return curvature_samples_ / options_.schedule.curvature_samples;
   }
-  // Of twice as many, and in double precision: the steps that it is wanted for are long.
-  void TakeMoreCurvature();
+  // From now on, and in double precision: the steps that it is wanted for are long.
+  void GrowCurvature(std::size_t times);
 
   bool HasEnergy() const { return problem_.terms.EnergyWeight() > 0.0; }
   // Of the energy term, from now on.

@@ -16,6 +16,7 @@
 #include "pbnbrdf/network/network_shape.h"
 #include "sources/hdf5_handles.h"
 #include "sources/hdf5_texts.h"
+#include "sources/keras_archive.h"
 
 namespace pbnbrdf {
 namespace {
@@ -27,7 +28,6 @@ constexpr std::size_t kMaxLinks = 4096;   // of a group; groups of a file
 constexpr int kMaxDepth = 6;              // of groups in groups
 constexpr std::string_view kExpected =
     "expected dense layers of Keras, each with a kernel and a bias";
-constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
 using Handle = Hdf5Handle;
 
@@ -76,7 +76,7 @@ void CheckHeaps(const std::string& path, std::string_view bytes) {
 // only ones that Keras writes and CheckHeaps looks through.
 void CheckSuperblock(const std::string& path, std::string_view bytes) {
   constexpr std::size_t kSizesAt[] = {13, 13, 9, 9};  // by the superblock's version
-  if (!bytes.starts_with(kSignature)) {
+  if (!bytes.starts_with(kHdf5Magic)) {
     Fail(path, ": not an HDF5 file; expected a network that Keras saved");
   }
   const std::size_t version = bytes.size() < 16 ? ~0u : static_cast<unsigned char>(bytes[8]);
@@ -218,7 +218,10 @@ class LayerFinder {
     for (const auto& [child, listed] : InOrder(links)) {
       const Handle object(H5Oopen(group.get(), child.c_str(), H5P_DEFAULT), H5Oclose);
       if (!object) FailDamaged(path_);
-      if (H5Iget_type(object.get()) != H5I_GROUP) continue;
+      if (H5Iget_type(object.get()) != H5I_GROUP) {
+        Fail(path_, ": dataset ", name, "/", child,
+             " isn't a dense layer's kernel or bias; networks of ", "other layers aren't read");
+      }
       const std::size_t before = layers.size();
       Visit(StrCat(name, "/", child), object, depth - 1);
       if (layers.size() == before || listed) continue;
@@ -273,7 +276,8 @@ std::string LayersGroup(const std::string& path, const Handle& file) {
 }  // namespace
 
 std::vector<KerasDenseLayer> ReadKerasDenseLayers(const std::string& path) {
-  const std::string bytes = ReadFile(path, kMaxWeightFileSize);
+  std::string bytes = ReadFile(path, kMaxWeightFileSize);
+  if (bytes.starts_with(kZipMagic)) bytes = WeightsInArchive(path, bytes);
   CheckSuperblock(path, bytes);
   CheckHeaps(path, bytes);
   const Hdf5Turn turn;

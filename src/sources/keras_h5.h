@@ -2,7 +2,7 @@
 // holds its kernel (in x out) and bias (out):
 //
 //   kernel:0, bias:0   weights of Keras 2, /dense_1/dense_1/, or of a whole model, /model_weights/dense_1/...
-//   vars/0, vars/1     weights of Keras 3, /layers/dense_1/vars/
+//   vars/0, vars/1     weights of Keras 3, /layers/dense_1/vars/, also within a .keras archive
 //
 // Their order is that of the attribute layer_names. Where there is none, layers must be of one name but for a number
 // at its end, which is then their order; none is 0.
@@ -10,11 +10,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "network/tensor.h"
 
 namespace pbnbrdf {
+
+// How each HDF5 file begins.
+inline constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
 
 struct KerasDenseLayer {
   std::string name;  // "dense_1" to write, "/dense_1/dense_1" when read

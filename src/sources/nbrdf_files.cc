@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "pbnbrdf/base/error.h"
+#include "sources/keras_archive.h"
 #include "sources/keras_h5.h"
 #include "sources/npy.h"
 
@@ -12,7 +13,7 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::string_view kFirstNpy = "fc1.npy";
-constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n", kNpyMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr int kNpyLayers = 3;
 
 // A tensor and how messages name it.
@@ -25,9 +26,17 @@ struct Layer {
   Named kernel, bias;  // in x out; out
 };
 
-bool IsKeras(const std::string& path) {
+bool IsHdf5(const std::string& path) {
   const std::string name = LowerCase(path);
   return name.ends_with(".h5") || name.ends_with(".hdf5");
+}
+
+bool IsKeras(const std::string& path) {
+  return IsHdf5(path) || LowerCase(path).ends_with(".keras");
+}
+
+bool LooksLikeKeras(std::string_view start) {
+  return start.starts_with(kHdf5Magic) || start.starts_with(kZipMagic);
 }
 
 std::vector<Layer> ReadKerasLayers(const std::string& path) {
@@ -135,11 +144,11 @@ bool IsNbrdfFile(const std::string& path) {
 }
 
 bool LooksLikeNbrdf(std::string_view start) {
-  return start.starts_with(kHdf5Magic) || start.starts_with(kNpyMagic);
+  return LooksLikeKeras(start) || start.starts_with(kNpyMagic);
 }
 
 NeuralBrdf ReadNbrdf(const std::string& path) {
-  const bool keras = IsKeras(path) || ReadStart(path, kHdf5Magic.size()) == kHdf5Magic;
+  const bool keras = IsKeras(path) || LooksLikeKeras(ReadStart(path, kHdf5Magic.size()));
   const std::vector<Layer> layers = keras ? ReadKerasLayers(path) : ReadNpyLayers(path);
   std::vector<int> hidden = HiddenSizes(layers);
   std::vector<double> weights;
@@ -147,7 +156,7 @@ NeuralBrdf ReadNbrdf(const std::string& path) {
   try {
     const NetworkShape shape(Encoding::kCartesian, std::move(hidden), Activation::kRelu);
     return NeuralBrdf(shape, std::move(weights),
-                      {{"origin", keras ? "NBRDF, Keras HDF5 file" : "NBRDF, NumPy files"}});
+                      {{"origin", keras ? "NBRDF, Keras file" : "NBRDF, NumPy files"}});
   } catch (const Error& error) {
     Fail(path, ": ", error.what());
   }
@@ -156,7 +165,7 @@ NeuralBrdf ReadNbrdf(const std::string& path) {
 std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path) {
   CheckIsNbrdf(network);
   const std::vector<KerasDenseLayer> layers = DenseLayers(network.WithRgbOutputs());
-  if (IsKeras(path)) return {{path, KerasH5Bytes(layers)}};
+  if (IsHdf5(path)) return {{path, KerasH5Bytes(layers)}};
   if (!path.ends_with(kFirstNpy)) {
     Fail(path, ": name the first layer's file, ...", kFirstNpy,
          "; fc2, fc3, b1, b2 and b3 are written beside it");

@@ -76,7 +76,7 @@ const Format kFormats[] = {
      [](const std::string& path) { return Boxed(NeuralBrdf::Read(path)); }},
     {"Keras or NumPy network",
      [](const Content& file) { return LooksLikeNbrdf(file.start); },
-     {".h5", ".hdf5", ".npy"},
+     {".h5", ".hdf5", ".keras", ".npy"},
      [](const std::string& path) { return Boxed(ReadNbrdf(path)); }},
     {"analytic model",
      LooksLikeModel,

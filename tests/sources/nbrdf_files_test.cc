@@ -1,12 +1,14 @@
 #include "pbnbrdf/sources/nbrdf_files.h"
 
 #include <hdf5.h>
+#include <zip.h>
 
 #include <cstdlib>
 #include <cstring>
 #include <map>
 
 #include "base/text.h"
+#include "network/tensor.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "sources/npy_writer.h"
@@ -164,7 +166,7 @@ TEST(NbrdfFiles, NumPyAndKerasFilesGiveTheSameNetwork) {
   const NeuralBrdf keras = ReadNbrdf(folder / "x.hdf5");
   EXPECT_EQ(keras.shape().Description(), "6-8-5-3 relu");
   EXPECT_EQ(keras.metadata().at("encoding"), "cartesian");
-  EXPECT_EQ(keras.metadata().at("origin"), "NBRDF, Keras HDF5 file");
+  EXPECT_EQ(keras.metadata().at("origin"), "NBRDF, Keras file");
   WriteNpy<float>(folder / "a_", arrays);
   EXPECT_EQ(ReadNbrdf(folder / "a_fc1.npy").weights(), keras.weights());
   WriteNpy<double>(folder / "", arrays);
@@ -270,10 +272,50 @@ TEST(NbrdfFiles, LayersAreFoundWhateverTheirNames) {
   }
   EXPECT_THAT(ErrorOf([&] { read("/", words, "/one/kernel:0", "/one/bias:0", 0); }),
               HasSubstr("x.h5: layers one and three, and no list layer_names says"));
+  EXPECT_THAT(ErrorOf([&] { read("/", first, "/a/kernel:0", "/a/gamma:0", 0); }),
+              HasSubstr("x.h5: dataset /dense/a/bias:0 is missing"));
+  EXPECT_THAT(ErrorOf([&] { read("/", first, "/a/beta:0", "/a/gamma:0", 0); }),
+              HasSubstr("x.h5: dataset /dense/a/beta:0 isn't a dense layer's kernel or bias"));
   // By content, under another name.
   read("/", words, "/one/kernel:0", "/one/bias:0", H5T_VARIABLE);
   std::filesystem::rename(path, folder / "weights");
   EXPECT_EQ(OpenNetwork(folder / "weights").weights(), wanted);
+}
+
+// A ZIP archive with one file in it.
+void WriteArchive(const std::string& path, const std::string& name, const std::string& content) {
+  zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
+  zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
+  ASSERT_GE(zip_file_add(archive, name.c_str(), source, 0), 0);
+  ASSERT_EQ(zip_close(archive), 0);
+}
+
+TEST(NbrdfFiles, ModelsOfKeras3AreArchives) {
+  TemporaryFolder folder;
+  const std::string weights = folder / "x.h5", path = folder / "x.keras";
+  WriteLayers(weights, RandomArrays({6, 4, 4, 3}, /*seed=*/7), "/layers/",
+              {"dense", "dense_1", "dense_2"}, "/vars/0", "/vars/1", 0);
+  const std::string bytes = ReadFile(weights, kMaxWeightFileSize);
+  WriteArchive(path, "model.weights.h5", bytes);
+  EXPECT_EQ(ReadNbrdf(path).weights(), ReadNbrdf(weights).weights());
+  // By content, under another name.
+  std::filesystem::copy(path, folder / "model");
+  EXPECT_EQ(OpenNetwork(folder / "model").weights(), ReadNbrdf(weights).weights());
+
+  const auto error = [&] { return ErrorOf([&] { OpenBrdf(path); }); };
+  const std::string archive = ReadFile(path, kMaxWeightFileSize);
+  WriteBytes(path, archive.substr(0, archive.size() - 30));
+  EXPECT_THAT(error(), HasSubstr("x.keras: truncated or damaged ZIP archive"));
+  for (std::size_t at : {archive.size() / 4, archive.size() / 2, 3 * archive.size() / 4}) {
+    std::string damaged = archive;
+    damaged[at] ^= 0x55;
+    WriteBytes(path, damaged);
+    EXPECT_THAT(error(), HasSubstr("x.keras: truncated or damaged ZIP archive"));
+  }
+  WriteArchive(path, "other.h5", bytes);
+  EXPECT_THAT(error(), HasSubstr("x.keras: a ZIP archive without model.weights.h5"));
+  WriteArchive(path, "model.weights.h5", "nonsense");
+  EXPECT_THAT(error(), HasSubstr("x.keras: not an HDF5 file"));
 }
 
 TEST(NbrdfFiles, FilesOfEveryKerasHoldTheSameNetwork) {

@@ -26,8 +26,29 @@ struct Image {
   std::vector<float> rgb;
 };
 
+// Of an image: columns from left to before right, rows from top to before bottom.
+struct PixelRegion {
+  int left = 0, top = 0, right = 0, bottom = 0;
+
+  int width() const { return right - left; }
+  int height() const { return bottom - top; }
+  bool operator==(const PixelRegion&) const = default;
+};
+
+// An image of which a file stores a part (OpenEXR's data window); the rest is black.
+struct StoredImage {
+  Image image;
+  PixelRegion stored;
+  int left = 0,
+      top = 0;  // coordinates that the file gives the image's first pixel (its display window)
+};
+
+// The pixels of a region that lies in the image.
+Image Crop(const Image& image, const PixelRegion& region);
+
 // From an OpenEXR or PNG file, as its first bytes say. Throws Error as ReadExr and ReadPng do, and if it is
 // neither.
 Image OpenImage(const std::string& path);
+StoredImage OpenStoredImage(const std::string& path);
 
 }  // namespace pbnbrdf

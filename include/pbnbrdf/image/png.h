@@ -15,7 +15,7 @@ std::string PngBytes(const Image& image, double exposure = 1.0);
 void WritePng(const std::string& path, const Image& image, double exposure = 1.0);
 
 // Linear RGB in [0, 1] from a PNG of any kind, 16 bits kept. Values are taken as sRGB, whatever a gamma
-// chunk says; grey gives three equal channels, and transparency is left out. Throws Error, which
+// chunk says; grey gives three equal channels, and transparent pixels lie on black. Throws Error, which
 // names the file, if it is missing, isn't PNG, is truncated or damaged, or has more than kMaxPixels.
 Image ReadPng(const std::string& path);
 
