@@ -1,4 +1,7 @@
 // pbnbrdf compare: its output, its error map, its errors.
+#include <array>
+#include <cstring>
+
 #include "cli/cli_fixture.h"
 #include "image/images.h"
 #include "metrics/lpips_weights.h"
@@ -54,6 +57,34 @@ TEST_F(Compare, EqualImages) {
   EXPECT_EQ(measures.at("rmse"), 0.0);
   EXPECT_EQ(measures.at("flip"), 0.0);
   EXPECT_THAT(Run(Command("test.exr", "test.exr")).out, HasSubstr("psnr          inf"));
+}
+
+// The bytes of an OpenEXR file, one of its windows replaced.
+std::string WithWindow(std::string bytes, const std::string& name,
+                       std::array<std::int32_t, 4> window) {
+  const std::size_t header = bytes.find(name) + name.size() + sizeof("box2i") + 5;
+  std::memcpy(&bytes[header], window.data(), sizeof(window));
+  return bytes;
+}
+
+// Where a file stores nothing its image is unknown, not black.
+TEST_F(Compare, PartsOfAnImageAreComparedWhereBothAreKnown) {
+  const PixelRegion part = {5, 0, 25, 16};
+  const Image cropped = Crop(reference_, part);
+  std::string bytes = WithWindow(ExrBytes(cropped), "dataWindow", {5, 0, 24, 15});
+  bytes = WithWindow(bytes, "displayWindow", {0, 0, 29, 19});
+  WriteBytes(Path("part.exr"), bytes);
+  const Result same = Run(Command("reference.exr", "part.exr"));
+  EXPECT_THAT(same.out, HasSubstr("psnr          inf"));
+  EXPECT_THAT(same.out, HasSubstr("Compared where both files have pixels: 20 x 16 from (5, 0)."));
+  const json other = json::parse(Run(Command("part.exr", "test.exr") + " --json").out);
+  EXPECT_EQ(other.at("rmse"), CompareImages(cropped, Crop(test_, part)).rmse);
+  EXPECT_EQ(other.at("region"), json({5, 0, 20, 16}));
+
+  WriteBytes(Path("moved.exr"),
+             WithWindow(WithWindow(ExrBytes(test_), "dataWindow", {7, 0, 36, 19}), "displayWindow",
+                        {7, 0, 36, 19}));
+  ExpectError(Command("reference.exr", "moved.exr"), 1, "its display window begins at (7, 0)");
 }
 
 TEST_F(Compare, ErrorMap) {

@@ -5,11 +5,16 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 
 #include <limits>
+#include <optional>
 
 #include "image/images.h"
 #include "pbnbrdf/base/files.h"
@@ -102,6 +107,9 @@ struct Kind {
   Imath::V2i corner = {0, 0};  // of the data window
   int sampling = 1;            // of the last channel
   Imf::LevelMode levels = Imf::MIPMAP_LEVELS;
+  std::optional<Imath::Box2i> display = {};  // the data window if there is none
+  std::optional<Imf::Chromaticities> chromaticities = {};
+  std::optional<Imf::Envmap> envmap = {};
 };
 
 // The channel in the memory layout of the type.
@@ -119,7 +127,9 @@ template <typename T>
 void WriteAs(const std::string& path, const Image& image, const Kind& kind) {
   const Imath::Box2i window(kind.corner,
                             kind.corner + Imath::V2i(image.width - 1, image.height - 1));
-  Imf::Header header(Imath::Box2i({0, 0}, {99, 99}), window);
+  Imf::Header header(kind.display.value_or(window), window);
+  if (kind.chromaticities) Imf::addChromaticities(header, *kind.chromaticities);
+  if (kind.envmap) Imf::addEnvmap(header, *kind.envmap);
   header.compression() = kind.compression;
   Imf::FrameBuffer buffer;
   std::vector<std::vector<char>> channels;
@@ -174,17 +184,129 @@ TEST(Exr, ReadsEveryPixelTypeCompressionAndLayout) {
   }
 }
 
-TEST(Exr, ReadsTheDataWindowAndOnlyRgb) {
+TEST(Exr, ReadsOnlyRgb) {
   TemporaryFolder folder;
   const Image image = WholeNumbers(12, 9);
   for (bool tiled : {false, true}) {
+    const Imath::Box2i window({-7, 30}, {4, 38});
     WriteKind(folder / "a.exr", image,
-              {.tiled = tiled, .names = {"R", "G", "B", "A", "Z"}, .corner = {-7, 30}});
-    const Image read = ReadExr(folder / "a.exr");
-    EXPECT_EQ(read.width, 12);
-    EXPECT_EQ(read.height, 9);
-    EXPECT_EQ(read.rgb, image.rgb);
+              {.tiled = tiled,
+               .names = {"R", "G", "B", "A", "Z"},
+               .corner = window.min,
+               .display = window});
+    const StoredImage read = ReadStoredExr(folder / "a.exr");
+    EXPECT_EQ(read.image.width, 12);
+    EXPECT_EQ(read.image.rgb, image.rgb);
+    EXPECT_EQ(read.stored, (PixelRegion{0, 0, 12, 9}));
+    EXPECT_EQ(read.left, -7);
+    EXPECT_EQ(read.top, 30);
   }
+}
+
+// An image is its display window, whatever part of it the file stores.
+TEST(Exr, TheDisplayWindowIsTheImage) {
+  TemporaryFolder folder;
+  const Image image = WholeNumbers(12, 9);
+  const Imath::Box2i display({10, 20}, {17, 25});  // 8 x 6
+  struct Case {
+    Imath::V2i corner;
+    PixelRegion stored;
+  };
+  for (const Case& c : {Case{{8, 18}, {0, 0, 8, 6}},        // beyond it on all sides
+                        Case{{14, 22}, {4, 2, 8, 6}},       // its lower right
+                        Case{{3, 14}, {0, 0, 5, 3}},        // its upper left
+                        Case{{100, 100}, {8, 6, 8, 6}}}) {  // nowhere
+    WriteKind(folder / "a.exr", image, {.corner = c.corner, .display = display});
+    const StoredImage read = ReadStoredExr(folder / "a.exr");
+    ASSERT_EQ(read.image.width, 8);
+    ASSERT_EQ(read.image.height, 6);
+    if (c.corner.x < 100) {
+      EXPECT_EQ(read.stored, c.stored);
+    }
+    for (int y = 0; y < 6; ++y) {
+      for (int x = 0; x < 8; ++x) {
+        const int from_x = x + display.min.x - c.corner.x, from_y = y + display.min.y - c.corner.y;
+        const bool stored = from_x >= 0 && from_x < 12 && from_y >= 0 && from_y < 9;
+        EXPECT_EQ(*read.image.pixel(x, y), stored ? *image.pixel(from_x, from_y) : 0.0f);
+      }
+    }
+  }
+}
+
+TEST(Exr, LuminanceAloneIsGreyAndChromaIsRefused) {
+  TemporaryFolder folder;
+  const Image image = WholeNumbers(5, 4);
+  WriteKind(folder / "a.exr", image, {.names = {"Y"}});
+  const Image grey = ReadExr(folder / "a.exr");
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(Values(grey, c), Values(image, 0));
+  WriteKind(folder / "a.exr", image, {.names = {"Y", "RY", "BY"}});
+  EXPECT_THAT(ErrorOf([&] { ReadExr(folder / "a.exr"); }), HasSubstr("luminance and chroma"));
+}
+
+// By the matrix of ITU-R BT.2087 for colours of BT.2020; of equal energy, white stays white.
+TEST(Exr, OtherPrimariesAreConverted) {
+  TemporaryFolder folder;
+  const Image image = ConstantImage(3, 2, 0.2f, 0.5f, 0.1f), white = ConstantImage(3, 2, 1, 1, 1);
+  const Imf::Chromaticities bt2020({0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f},
+                                   {0.3127f, 0.329f});
+  WriteKind(folder / "a.exr", image, {.chromaticities = bt2020});
+  const Image read = ReadExr(folder / "a.exr");
+  EXPECT_NEAR(read.rgb[0], 1.6605 * 0.2 - 0.5876 * 0.5 - 0.0728 * 0.1, 1e-4);
+  EXPECT_NEAR(read.rgb[1], -0.1246 * 0.2 + 1.1329 * 0.5 - 0.0083 * 0.1, 1e-4);
+  EXPECT_NEAR(read.rgb[2], -0.0182 * 0.2 - 0.1006 * 0.5 + 1.1187 * 0.1, 1e-4);
+  const Imf::Chromaticities aces({0.7347f, 0.2653f}, {0.0f, 1.0f}, {0.0001f, -0.077f},
+                                 {0.32168f, 0.33767f});
+  WriteKind(folder / "a.exr", white, {.chromaticities = aces});
+  for (float value : ReadExr(folder / "a.exr").rgb) EXPECT_NEAR(value, 1.0, 1e-5);
+  WriteKind(folder / "a.exr", image, {.chromaticities = Imf::Chromaticities()});
+  EXPECT_EQ(ReadExr(folder / "a.exr").rgb, image.rgb);
+  const Imath::V2f point(0.3f, 0.3f);
+  WriteKind(folder / "a.exr", image,
+            {.chromaticities = Imf::Chromaticities(point, point, point, point)});
+  EXPECT_THAT(ErrorOf([&] { ReadExr(folder / "a.exr"); }), HasSubstr("a.exr: "));
+}
+
+TEST(Exr, CubeMapsAreNoLatitudeLongitude) {
+  TemporaryFolder folder;
+  const Image image = WholeNumbers(4, 24);
+  WriteKind(folder / "a.exr", image, {.envmap = Imf::ENVMAP_CUBE});
+  EXPECT_EQ(ReadExr(folder / "a.exr").rgb, image.rgb);
+  EXPECT_THAT(ErrorOf([&] { ReadLatLongExr(folder / "a.exr"); }), HasSubstr("a.exr: a cube map"));
+  WriteKind(folder / "a.exr", image, {.envmap = Imf::ENVMAP_LATLONG});
+  EXPECT_EQ(ReadLatLongExr(folder / "a.exr").rgb, image.rgb);
+}
+
+// As compositing programs save depth, before the colours.
+TEST(Exr, OfSeveralPartsTheOneWithColoursIsRead) {
+  TemporaryFolder folder;
+  const Image image = WholeNumbers(6, 5);
+  std::vector<Imf::Header> headers;
+  for (const char* name : {"depth", "colour"}) {
+    Imf::Header& header = headers.emplace_back(image.width, image.height);
+    header.setName(name);
+    header.setType(Imf::SCANLINEIMAGE);
+  }
+  headers[0].channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  for (const char* name : {"R", "G", "B"}) {
+    headers[1].channels().insert(name, Imf::Channel(Imf::FLOAT));
+  }
+  {
+    Imf::MultiPartOutputFile file((folder / "a.exr").c_str(), headers.data(), 2);
+    for (int part = 0; part < 2; ++part) {
+      Imf::FrameBuffer buffer;
+      std::size_t c = 0;
+      constexpr std::size_t kStride = 3 * sizeof(float);
+      for (const char* name : {"R", "G", "B"}) {
+        char* first = const_cast<char*>(reinterpret_cast<const char*>(image.rgb.data() + c++));
+        buffer.insert(part == 0 ? "Z" : name,
+                      Imf::Slice(Imf::FLOAT, first, kStride, kStride * std::size_t(image.width)));
+      }
+      Imf::OutputPart output(file, part);
+      output.setFrameBuffer(buffer);
+      output.writePixels(image.height);
+    }
+  }
+  EXPECT_EQ(ReadExr(folder / "a.exr").rgb, image.rgb);
 }
 
 TEST(Exr, ErrorsNameTheFileAndWhatIsWrong) {
@@ -200,7 +322,9 @@ TEST(Exr, ErrorsNameTheFileAndWhatIsWrong) {
 
   const Image image = WholeNumbers(8, 8);
   WriteKind(path, image, {.names = {"Y", "RY", "BY"}});
-  EXPECT_EQ(error(), path + ": no channel R; R, G and B are needed, it has BY, RY, Y");
+  EXPECT_EQ(
+      error(),
+      path + ": stored as luminance and chroma (Y, RY, BY); save it with channels R, G and B");
   WriteKind(path, image, {.names = {"R", "G", "diffuse.B"}});
   EXPECT_THAT(error(), HasSubstr("no channel B"));
   WriteKind(path, image, {.sampling = 2});

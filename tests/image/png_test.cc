@@ -97,9 +97,9 @@ TEST(Png, ReadsEveryKind) {
   EXPECT_EQ(ReadBack(PngOf(2, 1, 8, PNG_COLOR_TYPE_GRAY, {{51, 204}})),
             Linear({0.2, 0.2, 0.2, 0.8, 0.8, 0.8}));
   EXPECT_EQ(ReadBack(PngOf(2, 1, 1, PNG_COLOR_TYPE_GRAY, {{0x40}})), Linear({0, 0, 0, 1, 1, 1}));
-  EXPECT_EQ(ReadBack(PngOf(1, 1, 8, PNG_COLOR_TYPE_RGB_ALPHA, {{51, 102, 204, 3}})),
+  EXPECT_EQ(ReadBack(PngOf(1, 1, 8, PNG_COLOR_TYPE_RGB_ALPHA, {{51, 102, 204, 255}})),
             Linear({0.2, 0.4, 0.8}));
-  EXPECT_EQ(ReadBack(PngOf(1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, {{0x33, 0x33, 0, 9}})),
+  EXPECT_EQ(ReadBack(PngOf(1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, {{0x33, 0x33, 255, 255}})),
             Linear({0.2, 0.2, 0.2}));
   EXPECT_EQ(ReadBack(PngOf(2, 1, 1, PNG_COLOR_TYPE_PALETTE, {{0x40}})),
             Linear({1.0, 0.0, 0.2, 0.0, 0.4, 1.0}));
@@ -107,6 +107,15 @@ TEST(Png, ReadsEveryKind) {
                            {{0, 51, 102, 51, 102, 153}, {102, 153, 204, 153, 204, 255}},
                            PNG_INTERLACE_ADAM7)),
             Linear({0, 0.2, 0.4, 0.2, 0.4, 0.6, 0.4, 0.6, 0.8, 0.6, 0.8, 1}));
+}
+
+// What an editor left under transparent pixels isn't seen.
+TEST(Png, TransparentPixelsLieOnBlack) {
+  EXPECT_EQ(
+      ReadBack(PngOf(2, 1, 8, PNG_COLOR_TYPE_RGB_ALPHA, {{51, 102, 204, 0, 51, 102, 204, 255}})),
+      Linear({0, 0, 0, 0.2, 0.4, 0.8}));
+  EXPECT_EQ(ReadBack(PngOf(1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, {{0x33, 0x33, 0, 0}})),
+            Linear({0, 0, 0}));
 }
 
 TEST(Png, ErrorsNameTheFileAndWhatIsWrong) {
