@@ -46,11 +46,14 @@ std::string WeightsInArchive(const std::string& path, std::string_view bytes) {
   }
   const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(
       zip_fopen_index(archive.get(), entry.index, 0), zip_fclose);
-  std::string weights(entry.size, '\0');
-  if (!file || zip_fread(file.get(), weights.data(), weights.size()) !=
-                   static_cast<zip_int64_t>(weights.size())) {
+  // One byte more than there are: the archive's checksum is looked at where the file ends.
+  std::string weights(entry.size + 1, '\0');
+  if (!file ||
+      zip_fread(file.get(), weights.data(), entry.size) != static_cast<zip_int64_t>(entry.size) ||
+      zip_fread(file.get(), &weights[entry.size], 1) != 0) {
     FailDamaged(path, file ? zip_file_strerror(file.get()) : zip_strerror(archive.get()));
   }
+  weights.pop_back();
   return weights;
 }
 
