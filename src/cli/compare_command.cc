@@ -156,25 +156,19 @@ PixelRegion CommonRegion(const StoredImage& reference, const StoredImage& test,
   return both;
 }
 
-Image Part(Image image, const PixelRegion& region) {
-  const bool is_all = region.width() == image.width && region.height() == image.height;
-  return is_all ? std::move(image) : Crop(image, region);
-}
-
 // Measures the two images, and writes the map of errors if it is asked for.
 Measured Compare(const CompareOptions& options, const std::string& reference_path,
                  const std::string& test_path) {
   std::optional<LpipsWeights> lpips;
   if (!options.lpips.empty()) lpips = ReadLpipsWeights(options.lpips);
-  StoredImage reference_file = OpenStoredImage(reference_path);
-  StoredImage test_file = OpenStoredImage(test_path);
+  const StoredImage reference_file = OpenStoredImage(reference_path);
+  const StoredImage test_file = OpenStoredImage(test_path);
   CheckComparable(reference_file.image, test_file.image, reference_path, test_path);
   const PixelRegion region = CommonRegion(reference_file, test_file, reference_path, test_path);
   const bool is_part =
       region.width() < reference_file.image.width || region.height() < reference_file.image.height;
-  const Image reference = Part(std::move(reference_file.image), region),
-              test = Part(std::move(test_file.image), region);
-  if (is_part) CheckComparable(reference, test, reference_path, test_path);
+  const Image reference = Crop(reference_file.image, region), test = Crop(test_file.image, region);
+  CheckComparable(reference, test, reference_path, test_path);
   if (lpips) CheckLargeEnoughForLpips(reference, reference_path);
   Measured measured{CompareImages(reference, test), region, is_part, std::nullopt};
   if (lpips) {

@@ -22,7 +22,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr const char* kChannels[] = {"R", "G", "B"};
 constexpr const char* kLuminance = "Y";
 constexpr int kMaxSide = 1 << 16;  // pixels, four times the width of a 16K environment map
 constexpr float kSameChromaticity = 1e-4f;
@@ -43,7 +42,7 @@ bool Has(const Imf::Header& header, const char* name) {
 
 // The channels of red, green and blue. Throws Error unless they are there at full resolution.
 Channels ColorChannels(const std::string& path, const Imf::Header& header) {
-  Channels names = {kChannels[0], kChannels[1], kChannels[2]};
+  Channels names = {"R", "G", "B"};
   if (!Has(header, "R") && Has(header, kLuminance)) {
     if (Has(header, "RY") || Has(header, "BY")) {
       Fail(path, ": stored as luminance and chroma (Y, RY, BY); save it with channels R, G and B");
@@ -113,8 +112,7 @@ StoredImage Placed(Image image, const Imath::Box2i& data, const Imath::Box2i& di
     return placed;
   }
   placed.image = Image(size.x, size.y);
-  for (int y = placed.stored.top; y < placed.stored.bottom; ++y) {
-    if (placed.stored.width() <= 0) break;
+  for (int y = placed.stored.top; y < placed.stored.bottom && placed.stored.width() > 0; ++y) {
     std::copy_n(image.pixel(placed.stored.left - at.x, y - at.y), 3 * placed.stored.width(),
                 placed.image.pixel(placed.stored.left, y));
   }
@@ -174,9 +172,14 @@ StoredImage ReadPart(const std::string& path, Imf::MultiPartInputFile& file, int
   return Placed(std::move(image), data, display);
 }
 
-// What read(file, part) makes of the part with the colours.
-template <typename Read>
-auto ReadFrom(const std::string& path, Read read) {
+// Throws Error if an environment map isn't of latitude and longitude.
+void CheckLatLong(const std::string& path, const Imf::Header& header) {
+  if (Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE) {
+    Fail(path, ": a cube map; convert it to latitude-longitude (OpenEXR's exrenvmap -l does)");
+  }
+}
+
+StoredImage Read(const std::string& path, bool is_environment) {
   const std::string magic = ReadStart(path, 4);
   if (magic.size() < 4 || !Imf::isImfMagic(magic.data())) Fail(path, ": not an OpenEXR file");
   // Of the process: OpenEXR has no other place for limits that hold before it takes memory.
@@ -184,27 +187,18 @@ auto ReadFrom(const std::string& path, Read read) {
   Imf::Header::setMaxTileSize(kMaxSide, kMaxSide);
   return TranslateExrErrors(path + ": truncated or damaged OpenEXR file: ", [&] {
     Imf::MultiPartInputFile file(path.c_str());
-    return read(file, ColorPart(file));
+    const int part = ColorPart(file);
+    if (is_environment) CheckLatLong(path, file.header(part));
+    return ReadPart(path, file, part);
   });
 }
 
 }  // namespace
 
-StoredImage ReadStoredExr(const std::string& path) {
-  return ReadFrom(
-      path, [&](Imf::MultiPartInputFile& file, int part) { return ReadPart(path, file, part); });
-}
+StoredImage ReadStoredExr(const std::string& path) { return Read(path, /*is_environment=*/false); }
 
 Image ReadExr(const std::string& path) { return ReadStoredExr(path).image; }
 
-Image ReadLatLongExr(const std::string& path) {
-  return ReadFrom(path, [&](Imf::MultiPartInputFile& file, int part) {
-    const Imf::Header& header = file.header(part);
-    if (Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE) {
-      Fail(path, ": a cube map; convert it to latitude-longitude (OpenEXR's exrenvmap -l does)");
-    }
-    return ReadPart(path, file, part).image;
-  });
-}
+Image ReadLatLongExr(const std::string& path) { return Read(path, /*is_environment=*/true).image; }
 
 }  // namespace pbnbrdf

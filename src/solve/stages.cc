@@ -28,13 +28,13 @@ constexpr double kFineError = 1e-4;  // which no picture shows
 // cost of unseen samples has fallen by less than kPoorFall over kSlowIterations, up to kSureGrowth times as
 // many. Beyond, it pays for some narrow highlights, and hardly for measured materials: so only where the last
 // doubling took kWorthwhileFall off an error above kFineError in no more than kWorthwhileIterations, and
-// for as long as the error falls by kDearFall over kDearIterations; then it is kSureGrowth for good.
+// for as long as the error falls by kCostlyFall over kCostlyIterations; then it is kSureGrowth for good.
 constexpr double kPoorFall = 0.2;
 constexpr std::size_t kSureGrowth = 4;
 constexpr double kWorthwhileFall = 0.3;
-constexpr std::size_t kWorthwhileIterations = 50;
-constexpr std::size_t kDearIterations = 12;
-constexpr double kDearFall = 0.1;
+constexpr int kWorthwhileIterations = 50;
+constexpr std::size_t kCostlyIterations = 12;
+constexpr double kCostlyFall = 0.1;
 
 // Whether a number that is watched has all but ceased to fall.
 class Slowdown {
@@ -55,7 +55,7 @@ class Slowdown {
 };
 
 // Why a stage ended; kNone: the solver ended it.
-enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kIsTooDear, kNoGain };
+enum class End { kNone, kInterrupted, kWantsSamples, kWantsCurvature, kCostsTooMuch, kNoGain };
 
 class Stages {
  public:
@@ -72,8 +72,8 @@ class Stages {
       } else if (end == End::kWantsCurvature) {
         error_before_ = training_.ValidationError();
         training_.GrowCurvature(2 * training_.CurvatureGrowth());
-      } else if (end == End::kIsTooDear) {
-        max_growth_ = kSureGrowth;
+      } else if (end == End::kCostsTooMuch) {
+        may_cost_more_ = false;
         training_.GrowCurvature(kSureGrowth);
       } else {
         return;
@@ -82,10 +82,11 @@ class Stages {
   }
 
  private:
-  // What has ceased to fall, and after how many iterations of a stage.
+  // How a stage stands after so many iterations: the error of unseen samples, and what has ceased to fall.
   struct Signs {
-    bool is_dear = false;
-    std::size_t iterations = 0;
+    int iterations = 0;
+    double error = 0.0;
+    bool is_costly = false;
     bool is_slow = true, is_poor = true, is_idle = true;
     double overfit = 1.0;  // the cost of unseen samples over that of the training samples
   };
@@ -96,18 +97,16 @@ class Stages {
       const bool wants = signs.is_idle || (signs.is_slow && signs.overfit >= kOverfit);
       return wants ? End::kWantsSamples : End::kNone;
     }
-    if (signs.is_dear && training_.CurvatureGrowth() > kSureGrowth) return End::kIsTooDear;
-    if (signs.is_poor && IsCurvatureWorthwhile(signs.iterations)) return End::kWantsCurvature;
+    if (signs.is_costly && training_.CurvatureGrowth() > kSureGrowth) return End::kCostsTooMuch;
+    if (signs.is_poor && IsCurvatureWorthwhile(signs)) return End::kWantsCurvature;
     return signs.is_idle ? End::kNoGain : End::kNone;
   }
 
-  bool IsCurvatureWorthwhile(std::size_t iterations) {
+  bool IsCurvatureWorthwhile(const Signs& signs) {
     if (!training_.HasPartOfCurvature()) return false;
     if (training_.CurvatureGrowth() < kSureGrowth) return true;
-    if (training_.CurvatureGrowth() >= max_growth_) return false;
-    const double error = training_.ValidationError();
-    return iterations <= kWorthwhileIterations && error > kFineError &&
-           error < (1.0 - kWorthwhileFall) * error_before_;
+    return may_cost_more_ && signs.iterations <= kWorthwhileIterations &&
+           signs.error > kFineError && signs.error < (1.0 - kWorthwhileFall) * error_before_;
   }
 
   End RunStage(int max_iterations) {
@@ -116,7 +115,7 @@ class Stages {
     const double tolerance = training_.options().schedule.error_tolerance;
     Slowdown slow(pace * kSlowIterations, kSlowFall), poor(pace * kSlowIterations, kPoorFall);
     Slowdown idle(pace * kIdleIterations, tolerance);
-    Slowdown dear(pace * kDearIterations, kDearFall);
+    Slowdown costly(pace * kCostlyIterations, kCostlyFall);
     End end = End::kNone;
     const int before = training_.summary().iterations;
     training_.Minimize(max_iterations, [&](int iteration, double cost) {
@@ -124,20 +123,21 @@ class Stages {
       if (traits.is_stochastic || end != End::kNone) return end == End::kNone;
       const double validation = training_.ValidationCost();
       Signs signs;
-      signs.iterations = static_cast<std::size_t>(iteration);
+      signs.iterations = iteration;
+      signs.error = training_.ValidationError();
       signs.overfit = validation / cost;
       signs.is_slow = slow.Observe(cost);
       signs.is_poor = poor.Observe(validation);
-      const double error = training_.ValidationError();
-      signs.is_idle = idle.Observe(training_.HasEnergy() ? validation : error + kFineError);
-      signs.is_dear = dear.Observe(error);
+      signs.is_idle = idle.Observe(training_.HasEnergy() ? validation : signs.error + kFineError);
+      signs.is_costly = costly.Observe(signs.error);
       end = Next(signs);
       return end == End::kNone;
     });
     FitSummary& summary = training_.summary();
     if (!std::isfinite(summary.final_cost)) Fail("no start: ", summary.message);
     if (summary.termination == Termination::kConverged) {
-      return Next({.iterations = static_cast<std::size_t>(summary.iterations - before)});
+      return Next(
+          {.iterations = summary.iterations - before, .error = training_.ValidationError()});
     }
     if (summary.termination == Termination::kDiverged) return End::kNoGain;
     if (end != End::kNone && end != End::kInterrupted) {
@@ -149,7 +149,7 @@ class Stages {
 
   Training& training_;
   double error_before_ = std::numeric_limits<double>::infinity();  // J'J's last growth
-  std::size_t max_growth_ = std::numeric_limits<std::size_t>::max();
+  bool may_cost_more_ = true;  // than J'J of kSureGrowth times the samples
 };
 
 }  // namespace

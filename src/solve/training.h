@@ -22,7 +22,7 @@ class Training {
   FitSummary& summary() { return summary_; }
   std::vector<double>& weights() { return weights_; }
 
-  // On samples that no solver sees; and the cost and the mean absolute log error there.
+  // On samples that no solver sees, and its cost and mean absolute log error at the weights.
   Objective& validation() { return *validation_; }
   double ValidationCost() { return validation_->Cost(weights_.data()); }
   double ValidationError() { return validation_->MeanAbsLogError(weights_.data()); }

@@ -220,7 +220,7 @@ class LayerFinder {
       if (!object) FailDamaged(path_);
       if (H5Iget_type(object.get()) != H5I_GROUP) {
         Fail(path_, ": dataset ", name, "/", child,
-             " isn't a dense layer's kernel or bias; networks of ", "other layers aren't read");
+             " isn't a dense layer's kernel or bias; networks of other layers aren't read");
       }
       const std::size_t before = layers.size();
       Visit(StrCat(name, "/", child), object, depth - 1);

@@ -39,8 +39,7 @@ struct PixelRegion {
 struct StoredImage {
   Image image;
   PixelRegion stored;
-  int left = 0,
-      top = 0;  // coordinates that the file gives the image's first pixel (its display window)
+  int left = 0, top = 0;  // where the file's coordinates have the image's first pixel
 };
 
 // The pixels of a region that lies in the image.

@@ -26,11 +26,11 @@ bool IsNbrdfFile(const std::string& path);
 // Whether a file that begins so is one of HDF5, of ZIP or of NumPy.
 bool LooksLikeNbrdf(std::string_view start);
 
-// An HDF5 file, or a ZIP archive with one, as Keras 3 saves models: datasets as in keras_h5.h. "BASEfc1.npy", where BASE may end a folder's
-// name or be like "folder/blue-acrylic_": the six files BASEfc1.npy (6 x H1), BASEfc2.npy (H1 x H2),
-// BASEfc3.npy (H2 x 3), BASEb1.npy (H1), BASEb2.npy (H2) and BASEb3.npy (3). Throws Error if one is
-// missing, larger than kMaxWeightFileSize, damaged, of another shape or type, or holds a value that
-// isn't finite.
+// An HDF5 file, or a ZIP archive with one, as Keras 3 saves models: datasets as in keras_h5.h.
+// "BASEfc1.npy", where BASE may end a folder's name or be like "folder/blue-acrylic_": the six files
+// BASEfc1.npy (6 x H1), BASEfc2.npy (H1 x H2), BASEfc3.npy (H2 x 3), BASEb1.npy (H1), BASEb2.npy (H2)
+// and BASEb3.npy (3). Throws Error if one is missing, larger than kMaxWeightFileSize, damaged, of
+// another shape or type, or holds a value that isn't finite.
 NeuralBrdf ReadNbrdf(const std::string& path);
 
 // What ReadNbrdf reads from the same name, as float32: one Keras file or six NumPy files. Throws
