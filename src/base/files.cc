@@ -9,7 +9,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "pbnbrdf/base/error.h"
 
@@ -18,18 +20,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::streamsize kPipeBlock = 1 << 16;
+// Larger than any format's files but the largest spectral ones; /dev/zero has no end.
+constexpr std::size_t kMaxPipeBytes = std::size_t{1} << 30;
+
 std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
 
 void WriteStandardOutput(std::string_view content) {
   errno = 0;
   if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
       std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    Fail("standard output: cannot write: ", Reason());
+    // Where an earlier write failed, its reason is gone.
+    Fail("standard output: cannot write", errno != 0 ? ": " + Reason() : " all of it");
   }
+}
+
+// What a pipe or a device holds, read once and kept: its bytes don't come again.
+const std::string& PipeBytes(const std::string& path) {
+  static std::mutex mutex;
+  static std::map<std::string, std::string> all;
+  const std::lock_guard lock(mutex);
+  const auto known = all.find(path);
+  if (known != all.end()) return known->second;
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes, block(kPipeBlock, '\0');
+  while (in.read(block.data(), kPipeBlock), in.gcount() > 0) {
+    bytes.append(block, 0, static_cast<std::size_t>(in.gcount()));
+    if (bytes.size() > kMaxPipeBytes) Fail(path, ": a pipe of more than ", kMaxPipeBytes, " bytes");
+  }
+  if (in.bad() || bytes.empty()) Fail(path, ": cannot read: no data in this pipe or device");
+  return all.emplace(path, std::move(bytes)).first->second;
+}
+
+bool IsPipe(const std::string& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  return fs::is_fifo(status) || fs::is_character_file(status);
 }
 
 // Exactly `size` bytes from the file's beginning.
 std::string ReadBytes(const std::string& path, std::uintmax_t size) {
+  if (IsPipe(path)) return PipeBytes(path).substr(0, size);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) Fail(path, ": cannot read: ", Reason());
@@ -112,6 +143,7 @@ std::uintmax_t FileSize(const std::string& path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) Fail(path, ": no such file");
+  if (IsPipe(path)) return PipeBytes(path).size();
   if (!fs::is_regular_file(status)) Fail(path, ": not a regular file");
   const std::uintmax_t size = fs::file_size(path, code);
   if (code) Fail(path, ": cannot read: ", code.message());

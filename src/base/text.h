@@ -7,6 +7,9 @@
 
 namespace pbnbrdf {
 
+// What a text in UTF-8 may begin with.
+inline constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 // "a,b,c" -> {"a", "b", "c"}; blanks around the parts are dropped; "" -> {""}.
 std::vector<std::string> Split(std::string_view text, char separator);
 

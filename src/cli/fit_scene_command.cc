@@ -191,7 +191,7 @@ void PrepareOutputs(const Scene& scene, const FitSceneOptions& options) {
 
 int RunFitScene(const FitSceneOptions& options, const Arguments&) {
   CheckFlags([&] { ValidateFit(options.setup.problem, options.setup.options); });
-  const Scene scene = ReadScene(options.scene);
+  const Scene scene = ReadSceneAndTell(options.scene);
   PrepareOutputs(scene, options);
   CatchInterrupt();
   const Timer timer;

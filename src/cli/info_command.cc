@@ -80,17 +80,17 @@ void PrintReciprocity(const Brdf& material) {
             << ", half the mean |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)|\n";
 }
 
-// Of measurements: lists of them, and tables that aren't known everywhere or have noise that shows.
+// What to beware of, and of measurements: lists of them, and tables that aren't known everywhere or have noise that shows.
 void PrintCoverage(const Brdf& material) {
   const Coverage coverage = MeasureCoverage(material);
   const bool is_list = !material.Measurements().empty();
+  for (const std::string& caution : Cautions(coverage)) std::cout << "  " << caution << "\n";
   if (!is_list && coverage.known == 1.0 && coverage.negative == 0.0) return;
   std::cout << "  " << (is_list ? "measured near " : "known at ")
             << std::lround(100.0 * coverage.known)
             << " % of all pairs of directions\n  below 0: " << 100.0 * coverage.negative
             << " % of the values; noise: at most " << coverage.noise
             << " 1/sr, as far as neighbouring values differ\n";
-  if (coverage.in_plane) std::cout << "  " << kInPlaneNote << "\n";
 }
 
 int RunInfo(const Arguments& arguments) {

@@ -169,7 +169,7 @@ int RunRender(const RenderCommandOptions& options, const Arguments&) {
   const std::vector<Output> outputs = {
       {"out", options.out}, {"png", options.png}, {"summary", options.summary}};
   CheckOutputs(outputs);
-  Scene scene = ReadScene(options.scene, changes);
+  Scene scene = ReadSceneAndTell(options.scene, changes);
   if (!options.fits.empty()) UseFits(options.fits, &scene.materials);
   CatchInterrupt();
   const Rendering rendering = RenderScene(options, scene, render);

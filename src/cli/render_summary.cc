@@ -1,6 +1,7 @@
 #include "render_summary.h"
 
 #include <iomanip>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -52,6 +53,17 @@ std::string WorkText(const RenderWork& work) {
     text += WorkText(kind.name, work.*kind.work, kind.reasons);
   }
   return text;
+}
+
+Scene ReadSceneAndTell(const std::string& path, const SceneChanges& changes) {
+  Scene scene = ReadScene(path, changes);
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+    const std::size_t left_out = scene.shapes[i].mesh.mesh.left_out;
+    if (left_out == 0) continue;
+    std::cerr << "pbnbrdf: " << path << ": shapes[" << i
+              << "]: triangles without area left out: " << left_out << "\n";
+  }
+  return scene;
 }
 
 }  // namespace pbnbrdf::cli

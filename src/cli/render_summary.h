@@ -6,6 +6,7 @@
 
 #include "command_line.h"
 #include "pbnbrdf/render/render.h"
+#include "pbnbrdf/render/scene.h"
 
 namespace pbnbrdf::cli {
 
@@ -22,5 +23,8 @@ Json ToJson(const RenderSummary& summary);
 
 // A line for each kind of work.
 std::string WorkText(const RenderWork& work);
+
+// ReadScene. What it leaves out of meshes is said on standard error, a line for each shape.
+Scene ReadSceneAndTell(const std::string& path, const SceneChanges& changes = {});
 
 }  // namespace pbnbrdf::cli

@@ -30,6 +30,11 @@ constexpr double kAlbedoPart = 0.25;  // of the time, for the albedos of the mat
 constexpr int kTrialAngles = 10, kTrials = 4;
 constexpr double kChecksPerAngle = 1.7;  // with refinements and reciprocity
 
+constexpr double kExplainsNothing = 0.8;  // HeldOutErrors::relative_error
+// Largest values (1/sr) beyond which the unit is in doubt: dark materials, too, reflect more than the one at some
+// pair of directions, and only mirrors more than the other.
+constexpr double kMinLargest = 1e-3, kMaxLargest = 1e4;
+
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
   if (energy.Conserved()) return "certified";
@@ -85,6 +90,22 @@ std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms
 
 }  // namespace
 
+std::vector<std::string> Cautions(const Coverage& coverage) {
+  std::vector<std::string> cautions;
+  if (coverage.in_plane) {
+    cautions.push_back(
+        "only a plane was measured: what lies beside it is a guess, by a model fitted to the "
+        "plane");
+  }
+  if (!(coverage.largest >= kMinLargest && coverage.largest <= kMaxLargest)) {
+    cautions.push_back(
+        StrCat("the largest value is ", coverage.largest,
+               " 1/sr, where a white diffuse surface has 0.32: if the unit is another one, "
+               "--scale_to_albedo=A makes A the largest directional albedo"));
+  }
+  return cautions;
+}
+
 double SecondsOfChecks(const NetworkShape& shape) {
   const NeuralBrdf network(shape, std::vector<double>(shape.num_weights()));
   AlbedoGrid grid;
@@ -115,7 +136,13 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
   }
   const auto at_measured = MovedToMeasured(material, heldout);
   const Coverage coverage = MeasureCoverage(material);
+  std::vector<std::string> cautions = Cautions(coverage);
+  if (errors.relative_error > kExplainsNothing) {
+    cautions.push_back(StrCat("the fit explains nothing: values are wrong by ",
+                              std::lround(100.0 * errors.relative_error), " % in the mean"));
+  }
   return {{"mean_abs_log_error", errors.mean_abs_log_error},
+          {"relative_error", errors.relative_error},
           {"error_at_measured", MeasureErrors(at_measured, fit).mean_abs_log_error},
           {"reciprocal_floor", ReciprocalFloor(heldout, material)},
           {"measured_part", coverage.known},
@@ -140,14 +167,16 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
           {"parameters", parameters},
           {"samples", errors.samples},
           {"dark_samples", colors.dark_samples},
-          {"cut_short", allowance.samples < options.samples || !allowance.material_albedo}};
+          {"cut_short", allowance.samples < options.samples || !allowance.material_albedo},
+          {"cautions", cautions}};
 }
 
 std::string MeasuresText(const Json& measures) {
   constexpr std::pair<const char*, const char*> kMeanings[] = {
       {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
+      {"relative_error", "mean |f cos - f^ cos| / mean |f cos|"},
       {"error_at_measured",
-       "the same at measured directions, where others are interpolated between them"},
+       "mean_abs_log_error at measured directions, where others are interpolated between them"},
       {"reciprocal_floor",
        "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
       {"measured_part", "of all pairs of directions: where the material is known, or nearly"},
@@ -185,7 +214,7 @@ std::string MeasuresText(const Json& measures) {
     }
     text << meaning << "\n";
   }
-  if (measures.at("measured_in_plane").get<bool>()) text << kInPlaneNote << "\n";
+  for (const auto& caution : measures.at("cautions")) text << caution.get<std::string>() << "\n";
   return text.str();
 }
 

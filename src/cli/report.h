@@ -3,9 +3,11 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "command_line.h"
 #include "material_options.h"
+#include "pbnbrdf/metrics/coverage.h"
 #include "pbnbrdf/solve/fit.h"
 
 namespace pbnbrdf::cli {
@@ -28,11 +30,11 @@ double SecondsOfChecks(const NetworkShape& shape);
 Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
                 const MeasureOptions& options = {});
 
-// Of materials that are measured_in_plane.
-inline constexpr char kInPlaneNote[] =
-    "only a plane was measured: what lies beside it is a guess, by a model fitted to the plane";
+// What to beware of in a material, a sentence each: only a plane was measured, or values look like those of
+// another unit.
+std::vector<std::string> Cautions(const Coverage& coverage);
 
-// A line for each key, with its unit and meaning.
+// A line for each key, with its unit and meaning, and for each of its "cautions".
 std::string MeasuresText(const Json& measures);
 
 struct FitSubject {

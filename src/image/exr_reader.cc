@@ -24,6 +24,7 @@ namespace {
 
 constexpr const char* kLuminance = "Y";
 constexpr int kMaxSide = 1 << 16;  // pixels, four times the width of a 16K environment map
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
 constexpr float kSameChromaticity = 1e-4f;
 
 using Channels = std::array<const char*, 3>;
@@ -179,6 +180,27 @@ void CheckLatLong(const std::string& path, const Imf::Header& header) {
   }
 }
 
+// A file's bytes, for OpenEXR: so that it may be a pipe.
+class MemoryStream : public Imf::IStream {
+ public:
+  explicit MemoryStream(const std::string& path)
+      : IStream(path.c_str()), bytes_(ReadFile(path, kMaxFileBytes)) {}
+
+  bool read(char to[], int count) override {
+    if (bytes_.copy(to, std::size_t(count), at_) != std::size_t(count)) {
+      throw Iex::InputExc("the file ends early");
+    }
+    at_ += std::size_t(count);
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t at) override { at_ = std::min<std::uint64_t>(at, bytes_.size()); }
+
+ private:
+  const std::string bytes_;
+  std::uint64_t at_ = 0;
+};
+
 StoredImage Read(const std::string& path, bool is_environment) {
   const std::string magic = ReadStart(path, 4);
   if (magic.size() < 4 || !Imf::isImfMagic(magic.data())) Fail(path, ": not an OpenEXR file");
@@ -186,7 +208,8 @@ StoredImage Read(const std::string& path, bool is_environment) {
   Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);
   Imf::Header::setMaxTileSize(kMaxSide, kMaxSide);
   return TranslateExrErrors(path + ": truncated or damaged OpenEXR file: ", [&] {
-    Imf::MultiPartInputFile file(path.c_str());
+    MemoryStream bytes(path);
+    Imf::MultiPartInputFile file(bytes);
     const int part = ColorPart(file);
     if (is_environment) CheckLatLong(path, file.header(part));
     return ReadPart(path, file, part);

@@ -104,13 +104,15 @@ double MeanDifference(const Brdf& brdf, int n_theta_h, int n_theta_d, int n_phi,
 HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& test) {
   const std::vector<Rgb> values = ValuesAt(reference, test);
   HeldOutErrors errors;
-  double squares = 0.0;
+  double squares = 0.0, differences = 0.0, magnitudes = 0.0;
   for (std::size_t n = 0; n < reference.size(); ++n) {
     const double cos_i = CosI(reference[n].pair);
     const Rgb &f = reference[n].value, &g = values[n];
     for (int c = 0; c < 3; ++c) {
       errors.mean_abs_log_error += std::abs(std::log1p(f[c] * cos_i) - std::log1p(g[c] * cos_i));
       squares += (f[c] - g[c]) * (f[c] - g[c]) * cos_i * cos_i;
+      differences += std::abs(f[c] - g[c]) * cos_i;
+      magnitudes += std::abs(f[c]) * cos_i;
     }
     errors.chromaticity_error +=
         std::abs(std::log1p(SquaredNorm(f, cos_i)) - std::log1p(SquaredNorm(g, cos_i)));
@@ -119,6 +121,9 @@ HeldOutErrors MeasureErrors(std::span<const BrdfSample> reference, const Brdf& t
   errors.mean_abs_log_error /= 3.0 * count;
   errors.chromaticity_error /= count;
   errors.rmse = std::sqrt(squares / (3.0 * count));
+  if (differences > 0.0) {
+    errors.relative_error = magnitudes > 0.0 ? differences / magnitudes : 1.0;
+  }
   errors.samples = reference.size();
   return errors;
 }

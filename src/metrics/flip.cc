@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "metrics/planes.h"
 #include "pbnbrdf/metrics/color.h"
@@ -154,23 +155,21 @@ struct Seen {
 };
 
 // (p0 x^2 + p1 x) / (q0 x^2 + q1 x + q2): K. Narkowicz. ACES Filmic Tone Mapping Curve. 2015. [2] takes
-// it at 0.6 x.
+// it at 0.6 x. Where x is negative it isn't monotonic, but has no pole.
 constexpr double kP0 = 0.6 * 0.6 * 2.51, kP1 = 0.6 * 0.03;
 constexpr double kQ0 = 0.6 * 0.6 * 2.43, kQ1 = 0.6 * 0.59, kQ2 = 0.14;
 
 double ToneCurve(double x) {
-  // Beyond this it is above 1 and would overflow.
+  // Beyond this, on both sides, it is above 1 and would overflow.
   constexpr double kBright = 1e6;
-  x = std::min(x, kBright);
+  x = std::clamp(x, -kBright, kBright);
   return std::clamp((kP0 * x * x + kP1 * x) / (kQ0 * x * x + kQ1 * x + kQ2), 0.0, 1.0);
 }
 
 Image ToneMapped(const Image& image, double exposure) {
   const double scale = std::exp2(exposure);
   Image mapped = image;
-  for (float& value : mapped.rgb) {
-    value = static_cast<float>(ToneCurve(scale * std::max(double(value), 0.0)));
-  }
+  for (float& value : mapped.rgb) value = static_cast<float>(ToneCurve(scale * value));
   return mapped;
 }
 
@@ -202,17 +201,17 @@ std::vector<double> FlipMap(const Image& reference, const Image& test) {
 }
 
 FlipExposures ReferenceExposures(const Image& reference) {
-  std::vector<double> luminances, lit;
+  // As [2]'s authors' program has it: the spacing of single precision at 1.
+  constexpr double kLeastMedian = std::numeric_limits<float>::epsilon();
+
+  std::vector<double> luminances;
   for (std::size_t i = 0; i < reference.rgb.size(); i += 3) {
-    Rgb linear;
-    for (int c = 0; c < 3; ++c) linear[c] = std::max(double(reference.rgb[i + c]), 0.0);
-    luminances.push_back(Luminance(linear));
-    if (luminances.back() > 0.0) lit.push_back(luminances.back());
+    const float* rgb = &reference.rgb[i];
+    luminances.push_back(Luminance({rgb[0], rgb[1], rgb[2]}));
   }
-  if (lit.empty()) return {};
-  const double largest = *std::max_element(lit.begin(), lit.end());
-  double median = Median(luminances);
-  if (!(median > 0.0)) median = Median(lit);
+  const double largest = *std::max_element(luminances.begin(), luminances.end());
+  if (!(largest > 0.0)) return {};
+  const double median = std::max(Median(luminances), kLeastMedian);
 
   // The positive x with ToneCurve(x) = 0.85.
   constexpr double kShown = 0.85;

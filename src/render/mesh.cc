@@ -4,6 +4,7 @@
 #include "mesh_checks.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
+#include "polygons.h"
 
 namespace pbnbrdf {
 namespace {
@@ -26,9 +27,10 @@ bool HasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
 TriangleMesh ReadMesh(const std::string& path) {
   const std::string bytes = ReadFile(path, kMaxFileBytes);
   return About(path, [&] {
-    TriangleMesh mesh = bytes.starts_with("ply") ? ParsePly(bytes) : ParseObj(bytes);
-    if (mesh.triangles.empty()) Fail("no faces: neither PLY nor Wavefront OBJ");
-    CheckTriangles(mesh);
+    const PolygonMesh polygons = bytes.starts_with("ply") ? ParsePly(bytes) : ParseObj(bytes);
+    if (polygons.face_ends.empty()) Fail("no faces: neither PLY nor Wavefront OBJ");
+    TriangleMesh mesh = Triangulated(polygons);
+    LeaveOutSlivers(&mesh);
     return mesh;
   });
 }
@@ -50,24 +52,24 @@ TriangleMesh ParallelogramMesh(const Vec3& center, const Vec3& x, const Vec3& y)
   return mesh;
 }
 
-void CheckTriangles(const TriangleMesh& mesh) {
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    if (!(LargestCoordinate(mesh.positions[i]) <= kMaxCoordinate)) {
+void LeaveOutSlivers(TriangleMesh* mesh) {
+  for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
+    if (!(LargestCoordinate(mesh->positions[i]) <= kMaxCoordinate)) {
       Fail("vertex ", i + 1, ": a coordinate isn't finite or is beyond ", kMaxCoordinate);
     }
   }
-  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-    const double length = Length(mesh.normals[i]);
+  for (std::size_t i = 0; i < mesh->normals.size(); ++i) {
+    const double length = Length(mesh->normals[i]);
     if (!std::isfinite(length) || length == 0.0) {
       Fail("vertex ", i + 1, ": its normal isn't finite or has no length");
     }
   }
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& [a, b, c] = mesh.triangles[i];
-    if (!HasArea(mesh.positions[a], mesh.positions[b], mesh.positions[c])) {
-      Fail("triangle ", i + 1, ": has no area");
-    }
-  }
+  const auto is_sliver = [&](const auto& triangle) {
+    const auto& [a, b, c] = triangle;
+    return !HasArea(mesh->positions[a], mesh->positions[b], mesh->positions[c]);
+  };
+  mesh->left_out += std::erase_if(mesh->triangles, is_sliver);
+  if (mesh->triangles.empty()) Fail("no triangle has an area");
 }
 
 }  // namespace pbnbrdf

@@ -1,10 +1,9 @@
-// mesh_checks.h: what Embree's single precision can hold, how exact it is, and parts of ReadMesh.
+// mesh_checks.h: what Embree's single precision can hold, and how exact it is.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 #include "pbnbrdf/render/mesh.h"
 
@@ -31,12 +30,8 @@ inline double LargestCoordinate(const Affine& map) {
   return sum;
 }
 
-// Their errors don't name the file. The meshes have indices in range; CheckTriangles checks the rest.
-TriangleMesh ParseObj(std::string_view text);
-TriangleMesh ParsePly(std::string_view bytes);
-
-// Throws Error "triangle N: ..." or "vertex N: ..." if a triangle has no area, a normal has no length,
-// or a coordinate is not finite or too large.
-void CheckTriangles(const TriangleMesh& mesh);
+// Takes out triangles without area and adds their number to left_out. Throws Error if that leaves none, or, as
+// "vertex N: ...", if a coordinate is not finite or too large or a normal not finite or without length.
+void LeaveOutSlivers(TriangleMesh* mesh);
 
 }  // namespace pbnbrdf

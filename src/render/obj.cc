@@ -1,20 +1,13 @@
 // Reads the geometry of Wavefront OBJ files.
-#include <map>
-
 #include "base/about.h"
 #include "base/text.h"
-#include "mesh_checks.h"
 #include "pbnbrdf/base/error.h"
+#include "polygons.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no index
-
-struct Corner {
-  std::uint32_t position, normal;  // indices; the normal may be kNone
-  auto operator<=>(const Corner&) const = default;
-};
+using Corner = PolygonMesh::Corner;
 
 std::vector<std::string_view> Words(std::string_view line) {
   std::vector<std::string_view> words;
@@ -29,29 +22,50 @@ std::vector<std::string_view> Words(std::string_view line) {
 
 class ObjParser {
  public:
-  TriangleMesh Parse(std::string_view text) {
-    int number = 0;
+  PolygonMesh Parse(std::string_view text) {
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     while (!text.empty()) {
-      const std::size_t end = text.find('\n');
-      ++number;
-      About(StrCat("line ", number), [&] {
-        if (end == std::string_view::npos && !Trim(text).empty()) Fail("cut off: has no end");
-        Line(Words(text.substr(0, end)));
-      });
-      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+      const int first = line_ + 1;
+      const std::string whole = WholeLine(&text);
+      About(StrCat("line ", first),
+            [&] { Line(Words(std::string_view(whole).substr(0, whole.find('#'))), first); });
     }
-    return Mesh();
+    CheckIndices();
+    return std::move(mesh_);
   }
 
  private:
-  void Line(const std::vector<std::string_view>& words) {
+  // Takes a line from the text, with those that it is continued on; a comment isn't.
+  std::string WholeLine(std::string_view* text) {
+    std::string whole;
+    bool goes_on = true;
+    while (goes_on && !text->empty()) {
+      ++line_;
+      const std::size_t end = std::min(text->find('\n'), text->size());
+      std::string_view line = text->substr(0, end);
+      text->remove_prefix(std::min(end + 1, text->size()));
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      goes_on = line.ends_with('\\') && line.find('#') == line.npos;
+      if (goes_on) line.remove_suffix(1);
+      whole += line;
+      whole += ' ';
+    }
+    return whole;
+  }
+
+  void Line(const std::vector<std::string_view>& words, int line) {
     if (words.empty()) return;
     if (words[0] == "v") {
-      positions_.push_back(Vector(words));
+      mesh_.positions.push_back(Vector(words));
     } else if (words[0] == "vn") {
-      normals_.push_back(Vector(words));
+      mesh_.normals.push_back(Vector(words));
     } else if (words[0] == "f") {
-      Face(words);
+      if (words.size() < 4) {
+        Fail("a face of ", words.size() - 1, " corners, at least 3 were expected");
+      }
+      for (std::size_t i = 1; i < words.size(); ++i) mesh_.corners.push_back(ParseCorner(words[i]));
+      mesh_.face_ends.push_back(mesh_.corners.size());
+      lines_.push_back(line);
     }
   }
 
@@ -62,60 +76,49 @@ class ObjParser {
     return {ParseNumber("x", words[1]), ParseNumber("y", words[2]), ParseNumber("z", words[3])};
   }
 
-  void Face(const std::vector<std::string_view>& words) {
-    if (words.size() < 4)
-      Fail("a face of ", words.size() - 1, " corners, at least 3 were expected");
-    const Corner first = ParseCorner(words[1]);
-    for (std::size_t i = 2; i + 1 < words.size(); ++i) {
-      triangles_.push_back({first, ParseCorner(words[i]), ParseCorner(words[i + 1])});
-    }
-  }
-
   // "position", "position/texture", "position//normal" or "position/texture/normal".
   Corner ParseCorner(std::string_view word) const {
     const std::vector<std::string> parts = Split(word, '/');
     const bool has_normal = parts.size() > 2 && !parts[2].empty();
-    return {Index(parts[0], positions_.size(), "vertex"),
-            has_normal ? Index(parts[2], normals_.size(), "normal") : kNone};
+    return {Index(parts[0], mesh_.positions.size(), kVertex),
+            has_normal ? Index(parts[2], mesh_.normals.size(), kNormal) : PolygonMesh::kNone};
   }
 
   // Indices count from 1, or backwards from -1, the last one so far.
   static std::uint32_t Index(const std::string& text, std::size_t count, const char* what) {
     const long number = ParseInteger(what, text), n = static_cast<long>(count);
     const long index = number < 0 ? n + number : number - 1;
-    if (index < 0 || index >= n) Fail(what, " ", number, " of ", n);
+    if (index < 0 || index >= PolygonMesh::kNone) Fail(what, " ", number, " of ", n);
     return static_cast<std::uint32_t>(index);
   }
 
-  TriangleMesh Mesh() {
-    bool all_normals = true;
-    for (const auto& corners : triangles_) {
-      for (const Corner& corner : corners) all_normals &= corner.normal != kNone;
-    }
-    TriangleMesh mesh;
-    std::map<Corner, std::uint32_t> vertices;
-    for (const auto& corners : triangles_) {
-      std::array<std::uint32_t, 3> triangle;
-      for (int k = 0; k < 3; ++k) {
-        const Corner corner = {corners[k].position, all_normals ? corners[k].normal : kNone};
-        const auto size = static_cast<std::uint32_t>(mesh.positions.size());
-        const auto [at, is_new] = vertices.try_emplace(corner, size);
-        triangle[k] = at->second;
-        if (!is_new) continue;
-        mesh.positions.push_back(positions_[corner.position]);
-        if (all_normals) mesh.normals.push_back(normals_[corner.normal]);
+  // A vertex may come after the face.
+  void CheckIndices() const {
+    std::size_t at = 0;
+    for (std::size_t face = 0; face < lines_.size(); ++face) {
+      for (; at < mesh_.face_ends[face]; ++at) {
+        const auto check = [&](std::uint32_t index, std::size_t count, const char* what) {
+          if (index >= count)
+            Fail("line ", lines_[face], ": ", what, " ", index + 1, " of ", count);
+        };
+        const Corner& corner = mesh_.corners[at];
+        check(corner.position, mesh_.positions.size(), kVertex);
+        if (corner.normal != PolygonMesh::kNone) {
+          check(corner.normal, mesh_.normals.size(), kNormal);
+        }
       }
-      mesh.triangles.push_back(triangle);
     }
-    return mesh;
   }
 
-  std::vector<Vec3> positions_, normals_;
-  std::vector<std::array<Corner, 3>> triangles_;
+  static constexpr char kVertex[] = "vertex", kNormal[] = "normal";
+
+  PolygonMesh mesh_;
+  int line_ = 0;
+  std::vector<int> lines_;  // of each face
 };
 
 }  // namespace
 
-TriangleMesh ParseObj(std::string_view text) { return ObjParser().Parse(text); }
+PolygonMesh ParseObj(std::string_view text) { return ObjParser().Parse(text); }
 
 }  // namespace pbnbrdf

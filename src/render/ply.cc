@@ -3,16 +3,16 @@
 #include <cstring>
 
 #include "base/text.h"
-#include "mesh_checks.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/names.h"
+#include "polygons.h"
 
 namespace pbnbrdf {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-// Reads a number of type T from its bytes.
+// Reads a number of type T from its bytes, of this machine's order.
 template <typename T>
 double Read(const char* bytes) {
   T value;
@@ -57,16 +57,25 @@ struct Element {
   std::vector<Property> properties;
 };
 
+enum class Format { kText, kLittleEndian, kBigEndian };
+
+constexpr NameTable<Format, 3> kFormats = {{{"ascii", Format::kText},
+                                            {"binary_little_endian", Format::kLittleEndian},
+                                            {"binary_big_endian", Format::kBigEndian}}};
+
 // The values of the body, one after the other, from text or bytes.
 class Values {
  public:
-  Values(std::string_view data, bool is_text) : data_(data), is_text_(is_text) {}
+  Values(std::string_view data, Format format) : data_(data), format_(format) {}
 
   double Next(const Type& type) {
-    if (is_text_) return ParseNumber("value", Word());
+    if (format_ == Format::kText) return ParseNumber("value", Word());
     if (left() < type.size) Fail("truncated");
+    char bytes[sizeof(double)];
+    data_.copy(bytes, type.size, at_);
     at_ += type.size;
-    return type.read(data_.data() + at_ - type.size);
+    if (format_ == Format::kBigEndian) std::reverse(bytes, bytes + type.size);
+    return type.read(bytes);
   }
 
   std::size_t left() const { return data_.size() - at_; }
@@ -76,13 +85,12 @@ class Values {
     constexpr std::string_view kBlank = " \t\r\n";
     const std::size_t begin = data_.find_first_not_of(kBlank, at_);
     if (begin == std::string_view::npos) Fail("truncated");
-    at_ = data_.find_first_of(kBlank, begin);
-    if (at_ == std::string_view::npos) Fail("truncated: the last line has no end");
+    at_ = std::min(data_.find_first_of(kBlank, begin), data_.size());
     return data_.substr(begin, at_ - begin);
   }
 
   std::string_view data_;
-  bool is_text_;
+  Format format_;
   std::size_t at_ = 0;
 };
 
@@ -90,9 +98,9 @@ class PlyParser {
  public:
   explicit PlyParser(std::string_view bytes) : rest_(bytes) {}
 
-  TriangleMesh Parse() {
+  PolygonMesh Parse() {
     Header();
-    Values values(rest_, is_text_);
+    Values values(rest_, format_);
     for (const Element& element : elements_) {
       if (element.count > 0 && element.properties.empty()) {
         Fail("element ", element.name, " has no properties");
@@ -103,8 +111,7 @@ class PlyParser {
       }
       for (std::size_t i = 0; i < element.count; ++i) Row(element, i, &values);
     }
-    CheckIndices();
-    if (!has_normals_) mesh_.normals.clear();
+    FinishCorners();
     return std::move(mesh_);
   }
 
@@ -123,11 +130,8 @@ class PlyParser {
     for (std::string line = HeaderLine(); line != "end_header"; line = HeaderLine()) {
       const std::vector<std::string> words = Split(line, ' ');
       if (words[0] == "format" && words.size() == 3) {
-        is_text_ = words[1] == "ascii";
+        format_ = ParseName(kFormats, "format", words[1]);
         has_format = true;
-        if (!is_text_ && words[1] != "binary_little_endian") {
-          Fail("format ", words[1], " isn't ascii or binary_little_endian");
-        }
       } else if (words[0] == "element" && words.size() == 3) {
         const long count = ParseInteger("element " + words[1], words[2]);
         if (count < 0) Fail("element ", words[1], ": ", count, " of them");
@@ -194,46 +198,39 @@ class PlyParser {
     Fail(element.name, " ", number + 1, ": ", error.what());
   }
 
-  // A face becomes a fan of triangles.
   void ReadList(bool is_face, const Property& property, Values* values) {
     const double count = values->Next(*property.count_type);
     if (!(count >= 0.0) || count > static_cast<double>(values->left()) + 1.0) {
       Fail("truncated: a list of ", count, " values");
     }
     if (is_face && count < 3.0) Fail("a face of ", count, " corners, at least 3 were expected");
-    std::array<std::uint32_t, 3> triangle = {};
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const double value = values->Next(*property.type);
       if (!is_face) continue;
       if (!(value >= 0.0 && value < 4294967295.0)) Fail("vertex index ", value);
-      const auto index = static_cast<std::uint32_t>(value);
-      if (k == 0) triangle[0] = index;
-      if (k >= 2) {
-        triangle[2] = index;
-        mesh_.triangles.push_back(triangle);
-      }
-      triangle[1] = index;
+      mesh_.corners.push_back({static_cast<std::uint32_t>(value), PolygonMesh::kNone});
     }
+    if (is_face) mesh_.face_ends.push_back(mesh_.corners.size());
   }
 
-  void CheckIndices() const {
-    for (const auto& triangle : mesh_.triangles) {
-      for (const std::uint32_t index : triangle) {
-        if (index >= mesh_.positions.size()) {
-          Fail("vertex index ", index, " of ", mesh_.positions.size());
-        }
+  void FinishCorners() {
+    for (PolygonMesh::Corner& corner : mesh_.corners) {
+      if (corner.position >= mesh_.positions.size()) {
+        Fail("vertex index ", corner.position, " of ", mesh_.positions.size());
       }
+      if (has_normals_) corner.normal = corner.position;
     }
   }
 
   std::string_view rest_;
-  bool is_text_ = false, has_normals_ = false;
+  Format format_ = Format::kText;
+  bool has_normals_ = false;
   std::vector<Element> elements_;
-  TriangleMesh mesh_;
+  PolygonMesh mesh_;
 };
 
 }  // namespace
 
-TriangleMesh ParsePly(std::string_view bytes) { return PlyParser(bytes).Parse(); }
+PolygonMesh ParsePly(std::string_view bytes) { return PlyParser(bytes).Parse(); }
 
 }  // namespace pbnbrdf

@@ -196,7 +196,7 @@ class SceneReader {
       const TriangleMesh mesh =
           type == "mesh" ? ReadMeshFile(json.At("file")) : ReadRectangle(json);
       shape.mesh = {Transformed(mesh, map), map.axes[0]};
-      json.Check([&] { CheckTriangles(shape.mesh.mesh); });
+      json.Check([&] { LeaveOutSlivers(&shape.mesh.mesh); });
     }
     scene_.shapes.push_back(std::move(shape));
   }
@@ -221,7 +221,8 @@ class SceneReader {
           {json.At("direction").Direction(), json.At("irradiance").Color()});
     } else {
       const Affine map = ReadTransform(json);
-      json.Check([&] { CheckTriangles(Transformed(ReadRectangle(json), map)); });
+      TriangleMesh mesh = Transformed(ReadRectangle(json), map);
+      json.Check([&] { LeaveOutSlivers(&mesh); });
       scene_.rectangle_lights.push_back(
           {map.origin, (json.At("width").Number() / 2.0) * map.axes[0],
            (json.At("height").Number() / 2.0) * map.axes[1], json.At("radiance").Color()});

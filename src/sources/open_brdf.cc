@@ -27,7 +27,6 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::size_t kStart = 1 << 16;  // bytes that tell what a file is; long comments come first
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 template <class Source>
 std::unique_ptr<Brdf> Boxed(Source source) {

@@ -10,7 +10,6 @@ namespace pbnbrdf {
 namespace {
 
 constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::string_view kBlanks = " \t";
 constexpr std::string_view kMissing[] = {"",     "nan",  "-nan", "na", "n/a",
                                          "#n/a", "null", "none", "-",  "--"};

@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <thread>
+
 #include "test_util.h"
 
 namespace pbnbrdf {
@@ -27,6 +29,20 @@ TEST(Files, ErrorsNameTheFile) {
   WriteBytes(folder / "big", "123456");
   EXPECT_THAT(ErrorOf([&] { ReadFile(folder / "big", 5); }),
               HasSubstr("big: 6 bytes, at most 5 were expected"));
+}
+
+TEST(Files, APipeIsReadOnceAndKept) {
+  TemporaryFolder folder;
+  const std::string pipe = folder / "pipe", bytes(100000, 'x');
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { WriteBytes(pipe, bytes); });
+  EXPECT_EQ(ReadStart(pipe, 3), "xxx");
+  writer.join();
+  EXPECT_EQ(FileSize(pipe), bytes.size());
+  EXPECT_EQ(ReadFile(pipe, bytes.size()), bytes);
+  EXPECT_THAT(ErrorOf([&] { ReadFile(pipe, 5); }), HasSubstr("100000 bytes, at most 5"));
+  EXPECT_THAT(ErrorOf([&] { ReadFile("/dev/null", 5); }), HasSubstr("/dev/null: cannot read"));
+  EXPECT_THAT(ErrorOf([&] { ReadStart("/dev/zero", 5); }), HasSubstr("a pipe of more than"));
 }
 
 TEST(Files, AFailedWriteLeavesNothing) {

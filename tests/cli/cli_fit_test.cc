@@ -159,22 +159,44 @@ TEST_F(Cli, MeasureHasExactlyTheDocumentedKeys) {
     keys.push_back(key);
     if (key == "measured_in_plane" || key == "cut_short") {
       EXPECT_TRUE(value.is_boolean());
+    } else if (key == "cautions") {
+      EXPECT_EQ(value, json::array());
     } else {
       EXPECT_EQ(value.is_number(), !key.ends_with("energy")) << key;
     }
   }
-  EXPECT_THAT(keys, testing::UnorderedElementsAre(
-                        "mean_abs_log_error", "error_at_measured", "reciprocal_floor",
-                        "measured_part", "measured_in_plane", "measured_negative", "measured_noise",
-                        "cut_short", "rmse", "hrl", "hcl", "max_directional_albedo", "energy",
-                        "eal", "material_max_directional_albedo", "material_energy",
-                        "chromaticity_error", "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean",
-                        "dark_hue_chroma_p95", "parameters", "samples", "dark_samples"));
+  EXPECT_THAT(keys,
+              testing::UnorderedElementsAre(
+                  "mean_abs_log_error", "error_at_measured", "reciprocal_floor", "measured_part",
+                  "measured_in_plane", "measured_negative", "measured_noise", "cut_short", "rmse",
+                  "hrl", "hcl", "max_directional_albedo", "energy", "eal",
+                  "material_max_directional_albedo", "material_energy", "chromaticity_error",
+                  "delta_e_mean", "delta_e_p95", "dark_hue_chroma_mean", "dark_hue_chroma_p95",
+                  "parameters", "samples", "dark_samples", "relative_error", "cautions"));
   EXPECT_EQ(measures["parameters"], 7 * 5 + 6 * 3);
   EXPECT_EQ(measures["samples"], 2000);
   const Result text = Run("measure --samples=2000 --fit=" + Path("a.safetensors") + material);
   EXPECT_THAT(text.out, HasSubstr("Helmholtz reciprocity loss (eq. 8)"));
-  for (const std::string& key : keys) EXPECT_THAT(text.out, HasSubstr(key + " "));
+  for (const std::string& key : keys) {
+    if (key == "cautions") continue;
+    EXPECT_THAT(text.out, HasSubstr(key + " "));
+  }
+}
+
+TEST_F(Cli, AFitThatExplainsNothingSaysSo) {
+  const std::string scaled = " --material=builtin:satin-gold --scale_to_albedo=";
+  const std::string fit = " --samples=1000 --max_iterations=3 --out=" + Path("a.safetensors");
+  const Result wrong_unit = Run("fit" + scaled + "1e-6" + fit);
+  ASSERT_EQ(wrong_unit.status, 0) << wrong_unit.err;
+  EXPECT_THAT(wrong_unit.out, HasSubstr("1/sr, where a white diffuse surface has 0.32"));
+  EXPECT_THAT(wrong_unit.out, HasSubstr("the fit explains nothing: values are wrong by "));
+  const Result another =
+      Run("measure --json --fit=" + Path("a.safetensors") + " --material=builtin:spectralon");
+  ASSERT_EQ(another.status, 0) << another.err;
+  const json measures = json::parse(another.out);
+  EXPECT_NEAR(measures["relative_error"], 1.0, 0.01);
+  EXPECT_EQ(measures["cautions"],
+            json::array({"the fit explains nothing: values are wrong by 100 % in the mean"}));
 }
 
 TEST_F(Cli, MeasureSaysWhereEnergyIsMade) {

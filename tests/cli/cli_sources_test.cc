@@ -1,5 +1,8 @@
 // Every kind of material through the commands.
+#include <sys/stat.h>
+
 #include <cmath>
+#include <thread>
 
 #include "cli/cli_fixture.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -27,6 +30,23 @@ TEST_F(CliSources, BadMaterialsExitWith1) {
   ExpectError("measure --material=builtin:satin-gold --fit=" + Path("none.safetensors"), 1,
               "no such file");
   ExpectError("info " + Path("none.binary"), 1, "no such file");
+}
+
+TEST_F(CliSources, PipesAreFiles) {
+  ASSERT_EQ(
+      Run("fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors")).status,
+      0);
+  WriteBytes(Path("a.csv"), "theta_i,phi_i,theta_o,phi_o,value\n0.5,0,0.4,3,0.2\n");
+  for (const std::string name : {"a.safetensors", "a.csv"}) {
+    const std::string file = Path(name), pipe = Path("pipe-" + name);
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    std::thread writer([&] { WriteBytes(pipe, ReadFile(file, 1 << 20)); });
+    const Result of_pipe = Run("info " + pipe);
+    writer.join();
+    ASSERT_EQ(of_pipe.status, 0) << of_pipe.err;
+    const std::string of_file = Run("info " + file).out;
+    EXPECT_EQ(of_pipe.out.substr(pipe.size()), of_file.substr(file.size()));
+  }
 }
 
 // A scan from each of four angles, in the plane of incidence; with `tilt`, also out of it.

@@ -55,6 +55,9 @@ def pairs():
     yield "brighter highlights", reference, np.where(reference > 1, 3 * reference, reference)
     dark = reference * (np.mgrid[0:80, 0:80][0] < 50)[..., None]
     yield "black below", dark, np.maximum(dark + rng.normal(scale=0.02, size=dark.shape), 0)
+    mostly_dark = reference * (np.mgrid[0:80, 0:80][0] < 30)[..., None]
+    yield "median of 0", mostly_dark, 1.1 * mostly_dark
+    yield "negative values", reference - 0.3, 1.1 * reference - 0.4
     yield "unrelated", scene(70, 50, 30), scene(70, 50, 31)
 
 

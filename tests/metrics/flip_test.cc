@@ -93,7 +93,19 @@ TEST(HdrFlip, ExposuresOfImagesThatAreMostlyBlack) {
   for (int i = 0; i < 4; ++i) std::fill_n(image.pixel(i, 0), 3, float(1 << (2 * i)));
   const FlipExposures exposures = ReferenceExposures(image);
   EXPECT_NEAR(ToneCurve(std::exp2(exposures.first) * 64.0), 0.85, 1e-9);
-  EXPECT_NEAR(ToneCurve(std::exp2(exposures.last) * 10.0), 0.85, 1e-9);
+  EXPECT_NEAR(ToneCurve(std::exp2(exposures.last) * 0x1p-23), 0.85, 1e-9);
+  for (float& value : image.rgb) value -= 100.0f;
+  EXPECT_EQ(ReferenceExposures(image).first, 0.0);
+}
+
+TEST(HdrFlip, NegativeValuesAreShownByTheCurve) {
+  const auto hdr_flip = [](float value) {
+    Image x = ConstantImage(20, 20, 1.0f, 1.0f, 1.0f), y = x;
+    std::fill_n(y.pixel(10, 10), 3, value);
+    return HdrFlipMap(x, y)[10 * 20 + 10];
+  };
+  EXPECT_EQ(hdr_flip(-100.0f), hdr_flip(1000.0f));  // both white
+  EXPECT_EQ(hdr_flip(-0.005f), hdr_flip(0.0f));     // both black
 }
 
 TEST(HdrFlip, SeesHighlightsThatOneExposureCuts) {

@@ -8,7 +8,10 @@
 
 namespace pbnbrdf {
 
-// The file's size in bytes. Throws Error if it is missing or not a regular file.
+// What is read may also be a pipe or a device, such as /dev/stdin: it is read to its end once, at most 1 GiB, and
+// kept; to read the same path again gives the same bytes.
+
+// The file's size in bytes. Throws Error if it is missing or a folder.
 std::uintmax_t FileSize(const std::string& path);
 
 // The file's bytes. Throws Error if it can't be read or is larger than `limit` bytes.

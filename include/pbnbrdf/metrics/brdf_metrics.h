@@ -13,6 +13,8 @@ struct HeldOutErrors {
   double mean_abs_log_error = 0.0;  // eq. 6 in absolute value, mean over channels too
   double chromaticity_error = 0.0;  // eq. 7 in absolute value
   double rmse = 0.0;                // of f cos_i, 1/sr, over channels too
+  // The mean absolute error of f cos_i over its mean absolute value: 1 for a fit of 0.
+  double relative_error = 0.0;
   std::size_t samples = 0;
 };
 

@@ -17,6 +17,9 @@ struct Coverage {
   // at most that in the median. Neighbours are a measurement and the nearest one to it, or values two degrees
   // of phi_d apart, twice the spacing of a MERL table, and the one between them.
   double noise = 0.0;
+  // The largest of the measurements, or of the values at known pairs and in mirror directions, with both directions
+  // within 60 degrees of the normal; 1/sr. 0 if there are none.
+  double largest = 0.0;
 };
 
 Coverage MeasureCoverage(const Brdf& material);

@@ -30,11 +30,12 @@ struct FlipExposures {
   int count = 2;
 };
 
-// Where the median is 0, it is that of the pixels that aren't black; 0 to 0 for a black reference.
+// The median counts as at least 2^-23; 0 to 0 for a reference without a positive luminance.
 FlipExposures ReferenceExposures(const Image& reference);
 
-// HDR-FLIP of each pixel: the largest FLIP over the exposures, after the ACES tone curve. Linear RGB,
-// finite; negative values count as 0. Both have the same size.
+// HDR-FLIP of each pixel: the largest FLIP over the exposures, after the ACES tone curve. Linear RGB, finite, of
+// the same size. Negative values are shown as the curve's formula has it, far negative ones bright, as [2]'s authors'
+// program does.
 std::vector<double> HdrFlipMap(const Image& reference, const Image& test);
 
 }  // namespace pbnbrdf

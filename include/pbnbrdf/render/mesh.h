@@ -14,20 +14,25 @@ struct TriangleMesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  // one for each position, not of unit length; empty: flat triangles
   std::vector<std::array<std::uint32_t, 3>> triangles;  // positions, counterclockwise from outside
+  std::size_t left_out =
+      0;  // triangles of the file that have no area, and that `triangles` doesn't have
 };
 
 // Reads one of these; the file's first bytes say which:
 //
-// Wavefront OBJ: v, vn and f lines. Faces of more than three corners become fans of triangles;
-// indices may be negative. All else is ignored: texture coordinates, groups, materials. Normals are
-// kept if each corner of each face has one; a position with several normals is repeated.
+// Wavefront OBJ: v, vn and f lines. Indices may be negative, or of a vertex further on; a line that ends in "\" goes
+// on in the next one, and "#" begins a comment. All else is ignored: texture coordinates, groups, materials.
 //
-// PLY, ascii or binary_little_endian: x, y, z of "vertex", its nx, ny, nz if all three are there, and
+// PLY, ascii or binary of either byte order: x, y, z of "vertex", its nx, ny, nz if all three are there, and
 // the list vertex_indices or vertex_index of "face". Other elements and properties are skipped.
 //
-// Throws Error, which names the file and, in a text file, the line: if the file is missing, truncated
-// or of another format, has no triangles, an index out of range, a triangle without area, or a
-// coordinate that is not finite or beyond 1e15.
+// Faces of more than three corners are cut into triangles, concave ones too (at most 1,000 corners). Where some corners
+// have normals, the others get the normal of their face. Triangles without area, as of corners in one place, are left
+// out. (Assimp, Debian's reader of both formats, stops at a byte order mark and at a comment behind a face, keeps
+// slivers, and reads single precision.)
+//
+// Throws Error, which names the file and, of OBJ, the line: if the file is missing, truncated or of another format,
+// has no triangle with an area, an index out of range, or a coordinate that is not finite or beyond 1e15.
 TriangleMesh ReadMesh(const std::string& path);
 
 // The mesh as the map places it; its determinant must not be 0. If the map reflects, the triangles'
