@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -20,9 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Around the number of the process in the names of files that aren't whole yet.
+constexpr std::string_view kPartial = ".pbnbrdf.", kPartialEnd = ".part";
 constexpr std::streamsize kPipeBlock = 1 << 16;
-// Larger than any format's files but the largest spectral ones; /dev/zero has no end.
-constexpr std::size_t kMaxPipeBytes = std::size_t{1} << 30;
+// More than files of most formats have; /dev/zero has no end.
+constexpr std::size_t kMaxPipeBytes = std::size_t{1} << 28;
 
 std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
 
@@ -102,12 +105,12 @@ class SignalsWait {
 // doesn't come about.
 class PartialFile {
  public:
-  // number: tells those of one process apart.
-  PartialFile(const std::string& path, std::size_t number) : path_(path) {
+  explicit PartialFile(const std::string& path) : path_(path) {
+    static std::atomic<std::size_t> count = 0;  // tells those of one process apart
     std::error_code code;
     // A link stays one: what it points to is replaced.
     target_ = fs::exists(path, code) ? fs::canonical(path, code) : fs::path(path);
-    partial_ = target_.parent_path() / StrCat(".pbnbrdf.", getpid(), ".", number, ".part");
+    partial_ = target_.parent_path() / StrCat(kPartial, getpid(), ".", count++, kPartialEnd);
   }
   ~PartialFile() {
     std::error_code code;
@@ -170,7 +173,7 @@ void WriteFile(const std::string& path, std::string_view content) {
     return;
   }
   const SignalsWait until_renamed;
-  PartialFile file(path, 0);
+  PartialFile file(path);
   file.Write(content);
   file.Rename();
 }
@@ -187,7 +190,7 @@ void WriteFiles(const std::vector<FileContent>& files) {
   std::vector<std::unique_ptr<PartialFile>> partials;
   for (const FileContent& file : files) {
     if (file.path == "-") continue;
-    partials.push_back(std::make_unique<PartialFile>(file.path, partials.size()));
+    partials.push_back(std::make_unique<PartialFile>(file.path));
     partials.back()->Write(file.content);
   }
   for (const auto& partial : partials) partial->Rename();
@@ -210,6 +213,17 @@ void CheckWritable(const std::string& path) {
   }
   errno = 0;
   if (access(folder.c_str(), W_OK) != 0) Fail(path, ": cannot write: ", Reason());
+}
+
+void RemovePartialFiles(const std::string& folder) {
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with(kPartial) || !name.ends_with(kPartialEnd)) continue;
+    const pid_t process = std::atoi(name.c_str() + kPartial.size());
+    const bool is_gone = process > 0 && kill(process, 0) != 0 && errno == ESRCH;
+    if (is_gone) fs::remove(entry.path(), code);
+  }
 }
 
 }  // namespace pbnbrdf

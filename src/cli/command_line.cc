@@ -24,7 +24,6 @@ constexpr OldName kOldNames[] = {
     {"fit", "model", "", "fit --model is now fit-model --model"},
     {"fit", "lobes", "", "fit --lobes is now fit-model --lobes"},
     {"fit", "scene", "", "fit --scene is now fit-scene --scene"},
-    {"fit", "out_dir", "", "fit --out_dir is now fit-scene --out_dir"},
     {"", "solver", "tiny_lm", "--solver=tiny_lm is now --solver=lm"},
     {"", "solver", "lbfgs", "--solver=lbfgs is now --solver=ceres_lbfgs"},
     {"", "log_weight", "", "--log_weight=W is now --terms=log:W"},

@@ -137,6 +137,10 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
   const auto at_measured = MovedToMeasured(material, heldout);
   const Coverage coverage = MeasureCoverage(material);
   std::vector<std::string> cautions = Cautions(coverage);
+  if (!fit.IsReciprocal()) {
+    cautions.push_back(
+        "the fit is not reciprocal: pictures depend on which end of a light path is called wi");
+  }
   if (errors.relative_error > kExplainsNothing) {
     cautions.push_back(StrCat("the fit explains nothing: values are wrong by ",
                               std::lround(100.0 * errors.relative_error), " % in the mean"));
@@ -220,17 +224,18 @@ std::string MeasuresText(const Json& measures) {
 
 NeuralBrdf WithMetadata(const Fit& fit, const FitSubject& subject, const Json& measures) {
   const auto& [network, problem, summary] = fit;
-  return {network.shape(),
-          network.weights(),
-          {{"version", PBNBRDF_VERSION},
-           {"material", subject.material.source},
-           {"scale_to_albedo", FormatNumber(subject.material.scale_to_albedo)},
-           {"terms", TermsText(problem.terms)},
-           {"problem", subject.flagfile},
-           {"seed", StrCat(problem.sampling.seed)},
-           {"termination", std::string(NameOf(kTerminations, summary.termination))},
-           {"mean_abs_log_error", FormatNumber(measures["mean_abs_log_error"])},
-           {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}}};
+  std::map<std::string, std::string> metadata = {
+      {"version", PBNBRDF_VERSION},
+      {"material", subject.material.source},
+      {"scale_to_albedo", FormatNumber(subject.material.scale_to_albedo)},
+      {"terms", TermsText(problem.terms)},
+      {"problem", subject.flagfile},
+      {"seed", StrCat(problem.sampling.seed)},
+      {"termination", std::string(NameOf(kTerminations, summary.termination))},
+      {"mean_abs_log_error", FormatNumber(measures["mean_abs_log_error"])},
+      {"max_directional_albedo", FormatNumber(measures["max_directional_albedo"])}};
+  if (!subject.fingerprint.empty()) metadata["fingerprint"] = subject.fingerprint;
+  return {network.shape(), network.weights(), std::move(metadata)};
 }
 
 Json FitSummaryJson(const Fit& fit, const FitSubject& subject, Json measures) {

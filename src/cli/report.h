@@ -39,7 +39,8 @@ std::string MeasuresText(const Json& measures);
 
 struct FitSubject {
   MaterialOptions material;
-  std::string flagfile;  // the flags that repeat the fit
+  std::string flagfile;          // the flags that repeat the fit
+  std::string fingerprint = {};  // of all that the fit depends on; "": not recorded
 };
 
 // The network with the metadata that its file is to have. measures: MeasureFit's.

@@ -1,5 +1,6 @@
 #include "pbnbrdf/sources/nbrdf_files.h"
 
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -49,15 +50,27 @@ std::vector<Layer> ReadKerasLayers(const std::string& path) {
   return layers;
 }
 
+struct NpyLayerNames {
+  std::string kernel, bias;
+};
+
+// From that of the first layer's kernel.
+std::array<NpyLayerNames, kNpyLayers> NpyNames(const std::string& path) {
+  const std::string base = path.substr(0, path.size() - kFirstNpy.size());
+  std::array<NpyLayerNames, kNpyLayers> names;
+  for (int k = 1; k <= kNpyLayers; ++k) {
+    names[k - 1] = {StrCat(base, "fc", k, ".npy"), StrCat(base, "b", k, ".npy")};
+  }
+  return names;
+}
+
 std::vector<Layer> ReadNpyLayers(const std::string& path) {
   if (!path.ends_with(kFirstNpy)) {
     Fail(path, ": name the first layer's file, ...", kFirstNpy,
          "; fc2, fc3, b1, b2 and b3 are read from beside it");
   }
-  const std::string base = path.substr(0, path.size() - kFirstNpy.size());
   std::vector<Layer> layers;
-  for (int k = 1; k <= kNpyLayers; ++k) {
-    const std::string kernel = StrCat(base, "fc", k, ".npy"), bias = StrCat(base, "b", k, ".npy");
+  for (const auto& [kernel, bias] : NpyNames(path)) {
     layers.push_back({{kernel, ReadNpy(kernel)}, {bias, ReadNpy(bias)}});
   }
   return layers;
@@ -174,12 +187,19 @@ std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string
     Fail("the NumPy files hold ", kNpyLayers, " layers, a ", network.shape().Description(),
          " network has ", layers.size());
   }
-  const std::string base = path.substr(0, path.size() - kFirstNpy.size());
+  const auto names = NpyNames(path);
   std::vector<FileContent> files;
-  for (int k = 1; k <= kNpyLayers; ++k) {
-    files.push_back({StrCat(base, "fc", k, ".npy"), NpyBytes(layers[k - 1].kernel)});
-    files.push_back({StrCat(base, "b", k, ".npy"), NpyBytes(layers[k - 1].bias)});
+  for (int k = 0; k < kNpyLayers; ++k) {
+    files.push_back({names[k].kernel, NpyBytes(layers[k].kernel)});
+    files.push_back({names[k].bias, NpyBytes(layers[k].bias)});
   }
+  return files;
+}
+
+std::vector<std::string> FilesReadWith(const std::string& path) {
+  if (!path.ends_with(kFirstNpy)) return {path};
+  std::vector<std::string> files;
+  for (const auto& [kernel, bias] : NpyNames(path)) files.insert(files.end(), {kernel, bias});
   return files;
 }
 

@@ -1,5 +1,6 @@
 #include "pbnbrdf/sources/sgd_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 
@@ -28,14 +29,19 @@ SgdParameters ParseRow(const TextTable& table) {
   return m;
 }
 
-}  // namespace
-
-SgdBrdf ReadSgd(const std::string& path, const std::string& material) {
+TextTable OpenTable(const std::string& path) {
   TextTable table = TextTable::Read(path, TextTable::Cells::kCommas);
   if (!table.Next() || table.line() != kNames) {
     Fail(path, ": not a table of SGD parameters: the first line must be ", kNames);
   }
   table.NameColumns();
+  return table;
+}
+
+}  // namespace
+
+SgdBrdf ReadSgd(const std::string& path, const std::string& material) {
+  TextTable table = OpenTable(path);
   std::array<SgdParameters, 3> channels;
   std::bitset<3> found;
   while (table.Next()) {
@@ -52,6 +58,16 @@ SgdBrdf ReadSgd(const std::string& path, const std::string& material) {
   if (found.none()) Fail(path, ": no material '", material, "' in it");
   if (!found.all()) Fail(path, ": material '", material, "' lacks a channel of r, g, b");
   return SgdBrdf(material, channels);
+}
+
+std::vector<std::string> SgdMaterials(const std::string& path) {
+  TextTable table = OpenTable(path);
+  std::vector<std::string> names;
+  while (table.Next()) {
+    const std::string name(table.cells()[0]);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace pbnbrdf

@@ -21,6 +21,9 @@ def read(file):
     return metadata["encoding"], metadata["activation"], layers
 
 
+NOT_RECIPROCAL = ("cartesian", "nonreciprocal")
+
+
 def encode(encoding, wi, wo):
     """N x 6 inputs."""
     total = wi + wo
@@ -47,6 +50,7 @@ def encode(encoding, wi, wo):
         "reciprocal": (sin, zero, cos, s * np.cos(2 * phi_d), s * np.sin(2 * phi_d), z),
         "multiscale": (sin, root, log, c2, s2phi, z),
         "elevations": (wi[:, 2] * wo[:, 2], root, log, c2, (wi[:, 2] + wo[:, 2]) / 2, z),
+        "nonreciprocal": (wi[:, 2], root, log, c2, wo[:, 2], z),
         "merl": (bend, root, log, c2, s2phi, z),
         "anisotropic": (root**1.5 * np.cos(phi), root**1.5 * np.sin(phi), log,
                         s2 * np.cos(turned), s2 * np.sin(turned), z)}

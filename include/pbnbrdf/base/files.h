@@ -8,7 +8,7 @@
 
 namespace pbnbrdf {
 
-// What is read may also be a pipe or a device, such as /dev/stdin: it is read to its end once, at most 1 GiB, and
+// What is read may also be a pipe or a device, such as /dev/stdin: it is read to its end once, at most 256 MiB, and
 // kept; to read the same path again gives the same bytes.
 
 // The file's size in bytes. Throws Error if it is missing or a folder.
@@ -37,5 +37,8 @@ void WriteFiles(const std::vector<FileContent>& files);
 // Throws Error unless WriteFile(path, ...) has a folder to write to that grants it: asked before a
 // long computation, so that its result isn't lost.
 void CheckWritable(const std::string& path);
+
+// Removes temporary files of WriteFile in the folder whose processes have ended, by SIGKILL or with the machine.
+void RemovePartialFiles(const std::string& folder);
 
 }  // namespace pbnbrdf

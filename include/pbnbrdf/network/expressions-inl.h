@@ -83,6 +83,16 @@ Inputs<V> AnisotropicInputs(const HalfDiffOf<V>& v) {
   return {r * v.cos_phi, r * v.sin_phi, log_theta, x, y, v.dz};
 }
 
+// As elevations, but with cos theta_i and cos theta_o themselves, in this order: for measurements whose
+// f(wi, wo) and f(wo, wi) contradict each other, and that are to be followed all the same.
+template <class V>
+Inputs<V> NonreciprocalInputs(const HalfDiffOf<V>& v) {
+  const V x = v.dx * v.dx - v.dy * v.dy;
+  const auto [root, log_theta] = ScaleTheta(v);
+  const V mean = v.cos_theta * v.dz, half_difference = v.sin_theta * v.dx;
+  return {mean - half_difference, root, log_theta, x, mean + half_difference, v.dz};
+}
+
 // The output unit where a network is evaluated: expm1(z), clamped to [0, Brdf::kLargestValue]; 0 where
 // z is not a number. expm1(30) = 1.07e13 is above the limit, and single precision still holds it.
 template <class V>
@@ -105,6 +115,7 @@ V ClampedReflectance(const V& z) {
   ENCODING(kMerl, "merl", MerlInputs, .isotropic = true, .reciprocal = true,                   \
            .default_of = MaterialKind::kTable)                                                 \
   ENCODING(kAnisotropic, "anisotropic", AnisotropicInputs, .reciprocal = true,                 \
-           .default_of = MaterialKind::kAnisotropic)
+           .default_of = MaterialKind::kAnisotropic)                                            \
+  ENCODING(kNonreciprocal, "nonreciprocal", NonreciprocalInputs, .isotropic = true)
 // clang-format on
 #endif

@@ -38,4 +38,7 @@ NeuralBrdf ReadNbrdf(const std::string& path);
 // float32, or if NumPy files are asked for and there are not two hidden layers.
 std::vector<FileContent> NbrdfFiles(const NeuralBrdf& network, const std::string& path);
 
+// The files that ReadNbrdf reads for this name: the six NumPy files for "BASEfc1.npy", or the file itself.
+std::vector<std::string> FilesReadWith(const std::string& path);
+
 }  // namespace pbnbrdf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pbnbrdf/models/sgd.h"
 
@@ -10,5 +11,8 @@ namespace pbnbrdf {
 // material: a name of the first or the second column. Its three rows, one for each of the channels r, g and
 // b, hold the parameters. Throws Error, naming the file and the line.
 SgdBrdf ReadSgd(const std::string& path, const std::string& material);
+
+// The names of all materials, those of the first column, in the file's order.
+std::vector<std::string> SgdMaterials(const std::string& path);
 
 }  // namespace pbnbrdf

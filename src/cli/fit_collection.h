@@ -1,0 +1,30 @@
+// fit_collection.h: `fit` for many materials: a folder of networks, finished fits kept, and a table of all.
+#pragma once
+
+#include "fit_material.h"
+
+namespace pbnbrdf::cli {
+
+enum class ProgressStyle { kTerminal, kJson };
+
+inline constexpr NameTable<ProgressStyle, 2> kProgressStyles = {
+    {{"terminal", ProgressStyle::kTerminal}, {"json", ProgressStyle::kJson}}};
+
+struct CollectionOptions {
+  std::string out_dir;
+  int jobs = 0;  // fits at a time; 0: one for each core
+  ProgressStyle progress = ProgressStyle::kTerminal;
+  bool quiet = false;
+};
+
+// Fits each of the sources that request.material.source stands for (sources/source_list.h), and writes
+//
+//   OUT_DIR/NAME.safetensors, OUT_DIR/NAME.json     network and summary, as for one material
+//   OUT_DIR/fits.csv, OUT_DIR/fits.json             a table of all: state, measures, why a fit failed
+//
+// Fits that the folder has are kept if material, problem and version are the same. A material that fails is
+// recorded, and the others go on. Whenever the program is killed, the same call goes on where it was. Returns the
+// exit status: 1 if a material failed or Ctrl-C ended it early.
+int FitCollection(const FitRequest& request, const CollectionOptions& options);
+
+}  // namespace pbnbrdf::cli

@@ -1,0 +1,102 @@
+#include "sources/source_list.h"
+
+#include <fnmatch.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "pbnbrdf/base/error.h"
+#include "pbnbrdf/base/files.h"
+#include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/sources/nbrdf_files.h"
+#include "pbnbrdf/sources/sgd_file.h"
+
+namespace pbnbrdf {
+namespace {
+
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
+constexpr std::string_view kBuiltin = "builtin:", kSgd = "sgd:";
+
+// The parts of "sgd:FILE#MATERIAL", or else the file alone.
+struct Parts {
+  explicit Parts(const std::string& source) : file(source) {
+    if (!source.starts_with(kSgd)) return;
+    const std::size_t hash = source.rfind('#');
+    if (hash == std::string::npos) return;
+    file = source.substr(kSgd.size(), hash - kSgd.size());
+    material = source.substr(hash + 1);
+  }
+  std::string file, material;
+};
+
+bool IsPattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
+
+std::vector<std::string> FilesLike(const std::string& pattern) {
+  glob_t found = {};
+  std::vector<std::string> files;
+  if (glob(pattern.c_str(), 0, nullptr, &found) == 0) {
+    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  }
+  globfree(&found);
+  return files;
+}
+
+// Those that the pattern fits, with `before` before each.
+std::vector<std::string> NamesLike(const std::string& pattern, const std::string& before,
+                                   const std::vector<std::string>& names) {
+  std::vector<std::string> sources;
+  for (const std::string& name : names) {
+    if (fnmatch(pattern.c_str(), name.c_str(), 0) == 0) sources.push_back(before + name);
+  }
+  return sources;
+}
+
+std::vector<std::string> Expand(const std::string& part) {
+  if (!IsPattern(part)) return {part};
+  if (part.starts_with(kBuiltin)) {
+    std::vector<std::string> names;
+    for (const BuiltinMaterial& material : BuiltinMaterials()) names.emplace_back(material.name);
+    return NamesLike(part.substr(kBuiltin.size()), std::string(kBuiltin), names);
+  }
+  const auto [file, material] = Parts(part);
+  if (!material.empty()) {
+    return NamesLike(material, StrCat(kSgd, file, "#"), SgdMaterials(file));
+  }
+  return std::filesystem::exists(part) ? std::vector{part} : FilesLike(part);
+}
+
+}  // namespace
+
+std::vector<std::string> ExpandSources(const std::string& text) {
+  std::vector<std::string> all;
+  for (const std::string& part : Split(text, ';')) {
+    const std::vector<std::string> sources = Expand(part);
+    if (sources.empty()) Fail(part, ": nothing has a name like this");
+    for (const std::string& source : sources) {
+      if (std::find(all.begin(), all.end(), source) == all.end()) all.push_back(source);
+    }
+  }
+  return all;
+}
+
+std::string NameOfSource(const std::string& source) {
+  if (source.starts_with(kBuiltin)) return source.substr(kBuiltin.size());
+  const Parts parts(source);
+  return parts.material.empty() ? std::filesystem::path(source).stem().string() : parts.material;
+}
+
+std::uint64_t SourceFingerprint(const std::string& source) {
+  Fingerprint fingerprint;
+  fingerprint.Add(source);
+  if (source.starts_with(kBuiltin) || NamesAnalyticModel(source)) return fingerprint.value();
+  for (const std::string& file : FilesReadWith(Parts(source).file)) {
+    fingerprint.Add(ReadFile(file, kMaxFileBytes));
+  }
+  return fingerprint.value();
+}
+
+}  // namespace pbnbrdf

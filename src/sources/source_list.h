@@ -1,0 +1,24 @@
+// source_list.h: many sources of reflectance from one text, and what they are made of.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pbnbrdf {
+
+// The sources that a text stands for, parts between semicolons, each once, in order:
+//
+//   merl/*.binary       the files, by name; *, ? and [...] as the shell has them
+//   sgd:FILE#*          the materials of the file; builtin:* those that come with the program
+//   anything else       itself
+//
+// Throws Error if a pattern stands for nothing.
+std::vector<std::string> ExpandSources(const std::string& text);
+
+// A name for what is made of a source: the file's without its ending, or the material's.
+std::string NameOfSource(const std::string& source);
+
+// A number for the source and the content of its files (base/hash.h). Throws Error if one can't be read.
+std::uint64_t SourceFingerprint(const std::string& source);
+
+}  // namespace pbnbrdf
