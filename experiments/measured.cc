@@ -238,11 +238,11 @@ class Study {
 
   void AddLeftOut(const std::string& name, const Brdf& material) {
     const std::vector<double> angles = material.IncidentAngles();
-    const std::unique_ptr<Brdf> best = material.BestEstimate();
+    const std::unique_ptr<Brdf> best = material.BestEstimate(Brdf::Estimate::kLikeliest);
     for (std::size_t k = 1; k + 1 < angles.size(); ++k) {
       const auto samples = SamplesAtAngle(material, angles[k], options_.samples);
       const std::unique_ptr<Brdf> rest = material.WithoutIncidentAngle(k);
-      const std::unique_ptr<Brdf> estimate = rest->BestEstimate();
+      const std::unique_ptr<Brdf> estimate = rest->BestEstimate(Brdf::Estimate::kLikeliest);
       const double plain = ErrorAt(samples, *PlainInterpolation(*rest));
       const double ours = ErrorAt(samples, methods_.Ours(*rest));
       ratios_.push_back(ours / plain);
@@ -260,7 +260,7 @@ class Study {
     const auto open = [&] { return OpenBrdf(source.source); };
     const auto symmetric = [&] { return std::make_unique<ReciprocalBrdf>(open()); };
     const auto target = [&] {
-      std::unique_ptr<Brdf> best = material.BestEstimate();
+      std::unique_ptr<Brdf> best = material.BestEstimate(Brdf::Estimate::kLikeliest);
       return std::make_unique<ReciprocalBrdf>(best ? std::move(best) : open());
     };
     const Image itself = studio.Photograph(open), twin = studio.Photograph(symmetric);

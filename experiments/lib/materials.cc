@@ -5,6 +5,7 @@
 
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "sources/source_list.h"
 
 namespace pbnbrdf {
 namespace {
@@ -82,17 +83,7 @@ MaterialSource ParseMaterial(const std::string& text) {
   if (has_class) material.material_class = text.substr(0, equals);
   material.source = has_class ? text.substr(equals + 1) : text;
   if (material.source.empty()) Fail("material '", text, "': names no source");
-  const std::string& source = material.source;
-  const std::size_t hash = source.find('#');
-  if (hash != std::string::npos) {
-    material.name = source.substr(hash + 1);
-  } else if (source.starts_with("builtin:")) {
-    material.name = source.substr(source.find(':') + 1);
-  } else {
-    const std::size_t slash = source.rfind('/');
-    const std::string file = slash == std::string::npos ? source : source.substr(slash + 1);
-    material.name = file.substr(0, file.rfind('.'));
-  }
+  material.name = NameOfSource(material.source);
   return material;
 }
 

@@ -1,14 +1,12 @@
 #include "stability_case.h"
 
 #include <algorithm>
-#include <set>
 
-#include "base/text.h"
 #include "extreme_materials.h"
-#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "solve/solver.h"
+#include "sources/source_list.h"
 
 namespace pbnbrdf {
 namespace {
@@ -55,7 +53,6 @@ const std::vector<const Solver*>& SweptSolvers() {
 }
 
 constexpr unsigned kWalkSeed = 1;
-constexpr std::uintmax_t kMaxTableSize = 1 << 20;  // bytes
 
 template <typename Enum, std::size_t N>
 std::vector<std::string> Names(const NameTable<Enum, N>& table) {
@@ -64,27 +61,12 @@ std::vector<std::string> Names(const NameTable<Enum, N>& table) {
   return names;
 }
 
-// The materials in the first column of the file, one after the other.
-std::vector<std::string> SgdMaterials(const std::string& path) {
-  std::vector<std::string> materials;
-  std::set<std::string> seen;
-  const std::vector<std::string> lines = Split(ReadFile(path, kMaxTableSize), '\n');
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::string name = lines[i].substr(0, lines[i].find(','));
-    if (!name.empty() && seen.insert(name).second) {
-      materials.push_back("sgd:" + path + "#" + name);
-    }
-  }
-  if (materials.empty()) Fail(path, ": names no material");
-  return materials;
-}
-
 std::vector<StabilityFactor> MakeFactors(const SweepSize& size, const std::string& sgd) {
   std::vector<std::string> materials, solvers, term_sets, seeds;
   for (const ExtremeMaterial& material : ExtremeMaterials()) materials.emplace_back(material.name);
   for (const BuiltinMaterial& material : BuiltinMaterials()) materials.emplace_back(material.name);
   if (!sgd.empty()) {
-    const std::vector<std::string> more = SgdMaterials(sgd);
+    const std::vector<std::string> more = ExpandSources("sgd:" + sgd + "#*");
     materials.insert(materials.end(), more.begin(), more.end());
   }
   for (const Solver* solver : SweptSolvers()) solvers.emplace_back(solver->name);

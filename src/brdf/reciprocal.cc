@@ -36,8 +36,8 @@ bool ReciprocalBrdf::IsKnown(const DirectionPair& pair) const {
   return source_->IsKnown(pair) || source_->IsKnown(Swapped(pair));
 }
 
-std::unique_ptr<Brdf> ReciprocalBrdf::BestEstimate() const {
-  std::unique_ptr<Brdf> best = source_->BestEstimate();
+std::unique_ptr<Brdf> ReciprocalBrdf::BestEstimate(Estimate estimate) const {
+  std::unique_ptr<Brdf> best = source_->BestEstimate(estimate);
   return best ? std::make_unique<ReciprocalBrdf>(std::move(best)) : nullptr;
 }
 

@@ -43,8 +43,8 @@ std::vector<BrdfSample> ScaledBrdf::Measurements() const {
   return samples;
 }
 
-std::unique_ptr<Brdf> ScaledBrdf::BestEstimate() const {
-  std::unique_ptr<Brdf> best = source_->BestEstimate();
+std::unique_ptr<Brdf> ScaledBrdf::BestEstimate(Estimate estimate) const {
+  std::unique_ptr<Brdf> best = source_->BestEstimate(estimate);
   return best ? std::make_unique<ScaledBrdf>(std::move(best), factor_) : nullptr;
 }
 

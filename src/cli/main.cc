@@ -1,5 +1,6 @@
 // pbnbrdf: the command line. Finds the subcommand, runs it and turns exceptions into one line.
 #include <glog/logging.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -175,6 +176,8 @@ void PrintError(std::string message) {
 int main(int argc, char** argv) {
   using pbnbrdf::cli::PrintError;
   pbnbrdf::cli::SilenceLog(argv[0]);
+  // Written at once at the end, where a failure is seen with its reason; not on a terminal.
+  if (isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, nullptr, _IOFBF, std::size_t{1} << 20);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
   try {
     const int status = pbnbrdf::cli::Run({argv + 1, argv + argc});

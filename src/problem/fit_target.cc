@@ -5,7 +5,9 @@
 namespace pbnbrdf {
 
 std::shared_ptr<const Brdf> FitTarget(const Brdf& material, Encoding encoding) {
-  std::shared_ptr<const Brdf> target = material.BestEstimate();
+  const auto estimate =
+      IsReciprocal(encoding) ? Brdf::Estimate::kLikeliest : Brdf::Estimate::kAsStored;
+  std::shared_ptr<const Brdf> target = material.BestEstimate(estimate);
   if (!target) target = std::shared_ptr<const Brdf>(std::shared_ptr<void>(), &material);
   if (!IsReciprocal(encoding) || target->IsReciprocal()) return target;
   return std::make_shared<ReciprocalBrdf>(std::move(target));

@@ -7,9 +7,9 @@
 
 namespace pbnbrdf {
 
-// The material's best estimate and, where the encoding is reciprocal and the material isn't, of that
-// the nearest reciprocal one: a loss that is next to absolute would take either of two values that
-// contradict each other. material must outlive the target.
+// With a reciprocal encoding, the material's likeliest estimate and, where that isn't reciprocal, the nearest one that
+// is: a loss that is next to absolute would take either of two values that contradict each other. Else the
+// material as it is stored. material must outlive the target.
 std::shared_ptr<const Brdf> FitTarget(const Brdf& material, Encoding encoding);
 
 }  // namespace pbnbrdf

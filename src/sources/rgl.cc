@@ -21,7 +21,7 @@ constexpr double kLastMeasured = 89.9 * kDegree;
 // Of the best estimate: what is added to values before the logarithm, the cubic's share of it, and how fast
 // certainty falls between nodes. A larger share or a faster fall brings fits nearer at measured angles, and
 // farther in pictures (experiments/measured.cc).
-constexpr double kLogOffset = 0.03, kCubicShare = 0.6, kDoubt = 8.0;
+constexpr double kLogOffset = 0.03, kCubicShare = 0.6, kDoubt = 7.7;
 constexpr float kLongestWave = 1e5f;       // nm
 constexpr std::size_t kShownText = 60;     // of a file's own description
 constexpr std::size_t kMostIsotropic = 2;  // phi_i nodes
@@ -358,22 +358,26 @@ void RglBrdf::EvaluateUnclipped(std::span<const DirectionPair> pairs, std::span<
 }
 
 bool RglBrdf::IsKnown(const DirectionPair& pair) const {
-  const bool is_estimate = interpolation_ == Interpolation::kBest;
+  const bool is_estimate = interpolation_ != Interpolation::kLinear;
   const double last =
       std::min<double>(tables_->theta_i.back(), is_estimate ? kLastEstimated : kLastKnown);
   return pair.AboveHorizon() && std::min(pair.wi.z, pair.wo.z) >= std::cos(last);
 }
 
-std::unique_ptr<Brdf> RglBrdf::BestEstimate() const {
-  return std::unique_ptr<Brdf>(new RglBrdf(tables_, Interpolation::kBest));
+std::unique_ptr<Brdf> RglBrdf::BestEstimate(Estimate estimate) const {
+  const auto interpolation =
+      estimate == Estimate::kLikeliest ? Interpolation::kBest : Interpolation::kStored;
+  return std::unique_ptr<Brdf>(new RglBrdf(tables_, interpolation));
 }
 
 double RglBrdf::Certainty(const DirectionPair& pair) const {
+  if (interpolation_ == Interpolation::kStored) return 1.0;
   const double doubt = kDoubt * tables_->Doubt(Elevation(pair.wi));
   return 1.0 / (1.0 + doubt * doubt);
 }
 
 std::optional<DirectionPair> RglBrdf::NearestMeasured(const DirectionPair& pair) const {
+  if (interpolation_ == Interpolation::kStored) return {};
   const NodePosition at = tables_->ThetaAt(pair.wi);
   const std::size_t nearest =
       std::min(at.below + (at.fraction > 0.5), tables_->measured_angles() - 1);

@@ -60,7 +60,7 @@ SgdBrdf ReadSgd(const std::string& path, const std::string& material) {
   return SgdBrdf(material, channels);
 }
 
-std::vector<std::string> SgdMaterials(const std::string& path) {
+std::vector<std::string> SgdMaterialNames(const std::string& path) {
   TextTable table = OpenTable(path);
   std::vector<std::string> names;
   while (table.Next()) {

@@ -64,7 +64,7 @@ std::vector<std::string> Expand(const std::string& part) {
   }
   const auto [file, material] = Parts(part);
   if (!material.empty()) {
-    return NamesLike(material, StrCat(kSgd, file, "#"), SgdMaterials(file));
+    return NamesLike(material, StrCat(kSgd, file, "#"), SgdMaterialNames(file));
   }
   return std::filesystem::exists(part) ? std::vector{part} : FilesLike(part);
 }

@@ -114,7 +114,7 @@ TEST_F(Cli, WrongUsageExitsWith2) {
       "'fitt' is not a command: fit | measure | info | eval | export | render | fit-scene | "
       "compare | fit-model; see pbnbrdf --help");
   ExpectError("fit", 2, "--material is required");
-  ExpectError("fit --material=builtin:satin-gold", 2, "--out is required");
+  ExpectError("fit --material=builtin:satin-gold", 2, "--out or --out_dir is required");
   ExpectError("info builtin: --all", 2, "--all is not a flag");
   const std::string fit = "fit --material=builtin:satin-gold --out=" + Path("out");
   ExpectError(fit + " --sample=3", 2, "--sample is not a flag; did you mean --samples?");
@@ -178,7 +178,7 @@ TEST_F(Cli, AStandardOutputThatCantBeWrittenIsAnError) {
   const std::string fit =
       "fit --material=builtin:spectralon" + kQuick + "--out=" + Path("a.safetensors");
   for (const std::string& arguments :
-       {std::string("--help"), std::string("fit --help"), std::string("--version"),
+       {std::string("--help"), std::string("fit --help=all"), std::string("--version"),
         std::string("info builtin:spectralon"), fit,
         "measure --samples=1000 --material=builtin:spectralon --fit=" + Path("a.safetensors")}) {
     const Result result = Run(arguments + " > /dev/full");

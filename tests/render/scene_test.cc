@@ -179,7 +179,7 @@ TEST_F(SceneFile, GeometryWithoutAreaIsRefused) {
   EXPECT_EQ(Error("[0, 2, 0, 0]", "[0, 2, 0]"),
             "shapes[2].transform[0].matrix[1]: expected four numbers");
   WriteBytes(folder_ / "line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-  EXPECT_THAT(Error("triangle.obj", "line.obj"), HasSubstr("line.obj: triangle 1: has no area"));
+  EXPECT_THAT(Error("triangle.obj", "line.obj"), HasSubstr("line.obj: no triangle has an area"));
   EXPECT_THAT(Error("[0, 3, 0]", "[0, 1e400, 0]"), HasSubstr("not JSON: number overflow"));
 }
 

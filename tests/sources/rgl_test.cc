@@ -162,7 +162,7 @@ class RglByAngle : public testing::Test {
 };
 
 TEST_F(RglByAngle, TheBestEstimateGoesThroughTheNodesAndStaysBetweenThem) {
-  const std::unique_ptr<Brdf> best = brdf_->BestEstimate();
+  const std::unique_ptr<Brdf> best = brdf_->BestEstimate(Brdf::Estimate::kLikeliest);
   double largest_difference = 0.0;
   for (std::size_t k = 0; k + 1 < kAngles.size(); ++k) {
     EXPECT_NEAR(TableValue(*best, kAngles[k]), kValues[k], 1e-4);
@@ -180,12 +180,24 @@ TEST_F(RglByAngle, TheBestEstimateGoesThroughTheNodesAndStaysBetweenThem) {
   EXPECT_GT(largest_difference, 0.02);
 }
 
+TEST_F(RglByAngle, AsStoredItIsWhatTheFormatSaysNearlyToTheHorizon) {
+  const std::unique_ptr<Brdf> stored = brdf_->BestEstimate(Brdf::Estimate::kAsStored);
+  for (double theta : {0.1, 0.4, 0.55, 1.2, 1.4}) {
+    EXPECT_EQ(TableValue(*stored, theta), TableValue(*brdf_, theta)) << theta;
+    EXPECT_EQ(stored->Certainty({FromSpherical(theta, 0.1), FromSpherical(0.3, 1.0)}), 1.0);
+  }
+  const DirectionPair grazing = {FromSpherical(1.55, 0.1), FromSpherical(1.55, 1.0)};
+  EXPECT_FALSE(brdf_->IsKnown(grazing));
+  EXPECT_TRUE(stored->IsKnown(grazing));
+  EXPECT_FALSE(stored->NearestMeasured(grazing));
+}
+
 TEST_F(RglByAngle, CertaintyIsLargestAtMeasuredAngles) {
   const Vec3 wo = FromSpherical(0.4, 2.0);
   const auto at = [&](double theta) { return brdf_->Certainty({FromSpherical(theta, 0.1), wo}); };
   for (std::size_t k = 0; k + 1 < kAngles.size(); ++k) EXPECT_NEAR(at(kAngles[k]), 1.0, 1e-6);
   EXPECT_LT(at(0.55), at(0.5));
-  EXPECT_NEAR(at(0.55), 1.0 / 17.0, 1e-6);
+  EXPECT_NEAR(at(0.55), 1.0 / (1.0 + 3.85 * 3.85), 1e-6);
   EXPECT_LT(at(1.56), at(1.4)) << "nothing is measured at 90 degrees";
   const auto nearest = brdf_->NearestMeasured({FromSpherical(0.53, 0.1), wo});
   ASSERT_TRUE(nearest);

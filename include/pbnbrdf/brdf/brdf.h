@@ -48,9 +48,12 @@ class Brdf {
   // instead of a model or a grid: what is fitted, while f in between is interpolated. Else empty.
   virtual std::vector<BrdfSample> Measurements() const { return {}; }
 
-  // What f is most likely to be in between, where that differs from Evaluate, which is what the file's
-  // format says: what a fit aims at. Else null.
-  virtual std::unique_ptr<Brdf> BestEstimate() const { return nullptr; }
+  // What a fit aims at, where that differs from this; else null.
+  //
+  // kLikeliest: what f is most likely to be where the format interpolates between measurements.
+  // kAsStored:  what the format says, all of it equally certain, and as far towards the horizon as it goes.
+  enum class Estimate { kLikeliest, kAsStored };
+  virtual std::unique_ptr<Brdf> BestEstimate(Estimate) const { return nullptr; }
 
   // How well f is known at the pair, in (0, 1]: 1 where it was measured, less where it is interpolated.
   virtual double Certainty(const DirectionPair&) const { return 1.0; }

@@ -20,7 +20,7 @@ class ReciprocalBrdf final : public Brdf {
   bool IsKnown(const DirectionPair& pair) const override;
   bool IsIsotropic() const override { return source_->IsIsotropic(); }
   std::vector<BrdfSample> Measurements() const override { return source_->Measurements(); }
-  std::unique_ptr<Brdf> BestEstimate() const override;
+  std::unique_ptr<Brdf> BestEstimate(Estimate estimate) const override;
   double Certainty(const DirectionPair& pair) const override;
   std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override {
     return source_->NearestMeasured(pair);

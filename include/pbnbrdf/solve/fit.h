@@ -37,7 +37,7 @@ struct ScheduleOptions {
   double max_seconds = 3600.0;  // > 0
   // Stop when all samples are in and 25 iterations take less than this part off the error of samples that
   // no solver sees, or of 1e-4 where that is larger; [0, 1]. Not for Adam.
-  double error_tolerance = 0.01;
+  double error_tolerance = 0.005;
   double function_tolerance = 1e-6;  // stop when |cost change| < function_tolerance * cost, which
                                      // with Adam is that of a mean (adam.cc)
 };

@@ -44,7 +44,7 @@ class RglBrdf final : public Brdf {
   // of log(v + 0.03), v being a table's value: four tenths of one and six of the other. With both
   // orders averaged, as a reciprocal fit has them, that is nearer to measurements that were left out than the
   // cubic alone.
-  std::unique_ptr<Brdf> BestEstimate() const override;
+  std::unique_ptr<Brdf> BestEstimate(Estimate estimate) const override;
 
   // 1 at a measured theta_i, less in between: 1 / (1 + (8 d)^2), d the distance to the nearest one as a
   // fraction of the interval.
@@ -76,7 +76,8 @@ class RglBrdf final : public Brdf {
 
  private:
   struct Tables;
-  enum class Interpolation { kLinear, kBest };  // over theta_i
+  // Over theta_i. kStored is linear, too, but all of it counts as known and measured.
+  enum class Interpolation { kLinear, kStored, kBest };
 
   RglBrdf(std::shared_ptr<const Tables> tables, Interpolation interpolation);
 

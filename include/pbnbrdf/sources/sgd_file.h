@@ -13,6 +13,6 @@ namespace pbnbrdf {
 SgdBrdf ReadSgd(const std::string& path, const std::string& material);
 
 // The names of all materials, those of the first column, in the file's order.
-std::vector<std::string> SgdMaterials(const std::string& path);
+std::vector<std::string> SgdMaterialNames(const std::string& path);
 
 }  // namespace pbnbrdf
