@@ -177,7 +177,8 @@ int main(int argc, char** argv) {
   using pbnbrdf::cli::PrintError;
   pbnbrdf::cli::SilenceLog(argv[0]);
   // Written at once at the end, where a failure is seen with its reason; not on a terminal.
-  if (isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, nullptr, _IOFBF, std::size_t{1} << 20);
+  static char buffer[1 << 20];
+  if (isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, buffer, _IOFBF, sizeof(buffer));
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write
   try {
     const int status = pbnbrdf::cli::Run({argv + 1, argv + argc});
