@@ -17,7 +17,7 @@ using Triangle = std::array<std::uint32_t, 3>;  // numbers of corners within a f
 // often written in single precision.
 constexpr double kStraight = 1e-9;
 
-// Cutting ears takes up to the cube of the number of corners; a thousand take milliseconds.
+// Cutting ears takes up to the cube of the number of corners: 0.1 s for a star of a thousand random rays.
 constexpr std::size_t kMaxConcaveCorners = 1000;
 
 // Cuts one face, whose neighbouring corners aren't in the same place, into triangles.
