@@ -21,11 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Around the number of the process in the names of files that aren't whole yet.
-constexpr std::string_view kPartial = ".pbnbrdf.", kPartialEnd = ".part";
+constexpr std::string_view kPartialEnd = ".part";
 constexpr std::streamsize kPipeBlock = 1 << 16;
 // More than files of most formats have; /dev/zero has no end.
 constexpr std::size_t kMaxPipeBytes = std::size_t{1} << 28;
+
+// How the names of files begin that aren't whole yet; the number of their process follows.
+std::string PartialStart() {
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);
+  return StrCat(".pbnbrdf.", host, ".");
+}
 
 std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
 
@@ -110,7 +116,7 @@ class PartialFile {
     std::error_code code;
     // A link stays one: what it points to is replaced.
     target_ = fs::exists(path, code) ? fs::canonical(path, code) : fs::path(path);
-    partial_ = target_.parent_path() / StrCat(kPartial, getpid(), ".", count++, kPartialEnd);
+    partial_ = target_.parent_path() / StrCat(PartialStart(), getpid(), ".", count++, kPartialEnd);
   }
   ~PartialFile() {
     std::error_code code;
@@ -217,10 +223,11 @@ void CheckWritable(const std::string& path) {
 
 void RemovePartialFiles(const std::string& folder) {
   std::error_code code;
+  const std::string start = PartialStart();
   for (const auto& entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename();
-    if (!name.starts_with(kPartial) || !name.ends_with(kPartialEnd)) continue;
-    const pid_t process = std::atoi(name.c_str() + kPartial.size());
+    if (!name.starts_with(start) || !name.ends_with(kPartialEnd)) continue;
+    const pid_t process = std::atoi(name.c_str() + start.size());
     const bool is_gone = process > 0 && kill(process, 0) != 0 && errno == ESRCH;
     if (is_gone) fs::remove(entry.path(), code);
   }

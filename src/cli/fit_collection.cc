@@ -50,7 +50,7 @@ struct Entry {
   Json summary = {};     // of the fit, if there is one
 };
 
-// Of all that a fit depends on.
+// Of all that a fit depends on; the number of threads isn't part of it.
 std::string FingerprintOf(const FitRequest& request) {
   FitRequest copy = request;
   Fingerprint fingerprint;
@@ -150,9 +150,7 @@ class Collection {
     FitRequest request = request_;
     request.material.source = entry->source;
     request.setup.options.threads = threads_;
-    FitRequest asked = request_;
-    asked.material.source = entry->source;
-    const std::string fingerprint = FingerprintOf(asked);
+    const std::string fingerprint = FingerprintOf(request);
     if (std::optional<Json> summary = Kept(entry->name, fingerprint)) {
       entry->state = State::kKept;
       entry->summary = std::move(*summary);
@@ -189,7 +187,8 @@ class Collection {
       const std::map<std::string, std::string> metadata = NeuralBrdf::Read(network).metadata();
       const auto found = metadata.find("fingerprint");
       if (found == metadata.end() || found->second != fingerprint) return {};
-      return ParseJson(ReadFile(summary, kMaxJsonBytes));
+      Json json = ParseJson(ReadFile(summary, kMaxJsonBytes));
+      return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
     } catch (const Error&) {
       return {};  // damaged: fitted again
     }
@@ -237,7 +236,7 @@ class Collection {
                   {"state", NameOf(kStates, entry.state)},
                   {"why", entry.why}};
       for (const char* measure : kMeasures) {
-        const Json value = entry.summary.is_null() ? Json() : entry.summary.at(measure);
+        const Json value = entry.summary.is_null() ? Json() : entry.summary.value(measure, Json());
         csv += StrCat(",", CsvField(value));
         row[measure] = value;
       }

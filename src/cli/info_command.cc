@@ -80,7 +80,8 @@ void PrintReciprocity(const Brdf& material) {
             << ", half the mean |log1p(f(wi, wo) cos_i) - log1p(f(wo, wi) cos_i)|\n";
 }
 
-// What to beware of, and of measurements: lists of them, and tables that aren't known everywhere or have noise that shows.
+// What to beware of. Of measurements, which are lists of them, and tables that aren't known everywhere or have noise
+// that shows, also how much they cover.
 void PrintCoverage(const Brdf& material) {
   const Coverage coverage = MeasureCoverage(material);
   const bool is_list = !material.Measurements().empty();

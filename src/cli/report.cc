@@ -97,9 +97,10 @@ std::vector<std::string> Cautions(const Coverage& coverage) {
         "only a plane was measured: what lies beside it is a guess, by a model fitted to the "
         "plane");
   }
-  if (!(coverage.largest >= kMinLargest && coverage.largest <= kMaxLargest)) {
+  const double largest = coverage.largest;
+  if (largest > 0.0 && (largest < kMinLargest || largest > kMaxLargest)) {
     cautions.push_back(
-        StrCat("the largest value is ", coverage.largest,
+        StrCat("the largest value within 60 degrees of the normal is ", largest,
                " 1/sr, where a white diffuse surface has 0.32: if the unit is another one, "
                "--scale_to_albedo=A makes A the largest directional albedo"));
   }

@@ -23,8 +23,8 @@ constexpr std::size_t kPairs = 10000;      // of random directions
 constexpr std::size_t kNeighbours = 1000;  // measurements whose neighbours are looked for
 // Sine of the angle between a direction and the plane: rounding of text.
 constexpr double kInPlane = 1e-3;
-constexpr double kSteep =
-    kPi / 3.0;  // from the normal; nearer to the horizon any highlight gets very bright
+// From the normal, radians: nearer to the horizon any highlight gets very bright.
+constexpr double kNearNormal = kPi / 3.0;
 constexpr double kNormalMedian = 0.6745;  // of |x|, where x has a standard deviation of 1
 
 // Uniform in solid angle.
@@ -41,20 +41,20 @@ bool IsInPlane(const DirectionPair& pair) {
 
 // Where highlights are, a degree of incidence apart.
 void AddMirrorPairs(const Brdf& material, std::vector<DirectionPair>* pairs) {
-  for (double theta = kPi / 180.0; theta < kSteep; theta += kPi / 180.0) {
+  for (double theta = kPi / 180.0; theta < kNearNormal; theta += kPi / 180.0) {
     const DirectionPair pair = {FromSpherical(theta, 0.0), FromSpherical(theta, kPi)};
     if (material.IsKnown(pair)) pairs->push_back(pair);
   }
 }
 
-bool IsSteep(const DirectionPair& pair) {
-  return std::min(pair.wi.z, pair.wo.z) > std::cos(kSteep);
+bool IsNearNormal(const DirectionPair& pair) {
+  return std::min(pair.wi.z, pair.wo.z) > std::cos(kNearNormal);
 }
 
-double LargestOfSteep(const std::vector<DirectionPair>& pairs, const std::vector<Rgb>& values) {
+double LargestNearNormal(const std::vector<DirectionPair>& pairs, const std::vector<Rgb>& values) {
   double largest = 0.0;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    if (IsSteep(pairs[n])) largest = std::max(largest, Largest(values[n]));
+    if (IsNearNormal(pairs[n])) largest = std::max(largest, Largest(values[n]));
   }
   return largest;
 }
@@ -150,7 +150,7 @@ Coverage MeasureCoverage(const Brdf& material) {
     coverage.in_plane = std::all_of(known.begin(), known.end(), IsInPlane);
     coverage.noise = NoiseOfList(measured, material.IsIsotropic());
   }
-  coverage.largest = LargestOfSteep(known, values);
+  coverage.largest = LargestNearNormal(known, values);
   const auto negative = std::count_if(values.begin(), values.end(), HasNegative);
   coverage.negative =
       static_cast<double>(negative) / static_cast<double>(std::max<std::size_t>(values.size(), 1));

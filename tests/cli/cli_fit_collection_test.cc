@@ -113,8 +113,14 @@ TEST_F(CliFitCollection, KilledAtAnyMomentItGoesOn) {
                                       " ", whole, " > ", Path("log"), " 2>&1");
     std::ignore = std::system(killed.c_str());
   }
-  WriteBytes(Path("fits/.pbnbrdf.999999999.0.part"), "left by a process that was killed");
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);
+  const std::string elsewhere = Path("fits/.pbnbrdf.another-machine.999999999.0.part");
+  WriteBytes(elsewhere, "being written");
+  WriteBytes(Path(StrCat("fits/.pbnbrdf.", host, ".999999999.0.part")),
+             "left by a process that was killed");
   ASSERT_EQ(Run(whole).status, 0);
+  EXPECT_TRUE(std::filesystem::remove(elsewhere));
   std::size_t files = 0;
   for (const auto& file : std::filesystem::directory_iterator(Path("fits"))) {
     ++files;

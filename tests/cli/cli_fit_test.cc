@@ -190,6 +190,7 @@ TEST_F(Cli, AFitThatExplainsNothingSaysSo) {
   ASSERT_EQ(wrong_unit.status, 0) << wrong_unit.err;
   EXPECT_THAT(wrong_unit.out, HasSubstr("1/sr, where a white diffuse surface has 0.32"));
   EXPECT_THAT(wrong_unit.out, HasSubstr("the fit explains nothing: values are wrong by "));
+  EXPECT_THAT(Run("info ggx:f0=0,alpha=0.2").out, testing::Not(HasSubstr("another one")));
   const Result another =
       Run("measure --json --fit=" + Path("a.safetensors") + " --material=builtin:spectralon");
   ASSERT_EQ(another.status, 0) << another.err;

@@ -1,4 +1,7 @@
 // files.h: whole files in and out, with errors that name the file; nothing is left half-written.
+//
+// What is read may also be a pipe or a device, such as /dev/stdin: it is read to its end once, at most 256 MiB,
+// and kept; to read the same path again gives the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +10,6 @@
 #include <vector>
 
 namespace pbnbrdf {
-
-// What is read may also be a pipe or a device, such as /dev/stdin: it is read to its end once, at most 256 MiB, and
-// kept; to read the same path again gives the same bytes.
 
 // The file's size in bytes. Throws Error if it is missing or a folder.
 std::uintmax_t FileSize(const std::string& path);
@@ -38,7 +38,8 @@ void WriteFiles(const std::vector<FileContent>& files);
 // long computation, so that its result isn't lost.
 void CheckWritable(const std::string& path);
 
-// Removes temporary files of WriteFile in the folder whose processes have ended, by SIGKILL or with the machine.
+// Removes temporary files of WriteFile in the folder that processes of this machine have left behind, ended by
+// SIGKILL or with the machine.
 void RemovePartialFiles(const std::string& folder);
 
 }  // namespace pbnbrdf

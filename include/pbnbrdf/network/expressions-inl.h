@@ -24,6 +24,12 @@ std::array<V, 2> ScaleTheta(const HalfDiffOf<V>& v) {
   return {sqrt(theta * 2.0 / std::numbers::pi), log(theta + 1e-3) / 3.0};
 }
 
+// (cos theta_i + cos theta_o) / 2 and (cos theta_o - cos theta_i) / 2.
+template <class V>
+std::array<V, 2> Elevations(const HalfDiffOf<V>& v) {
+  return {v.cos_theta * v.dz, v.sin_theta * v.dx};
+}
+
 // (hx, hy, hz, dx, dy, dz) with h turned to phi_h = 0, NBRDF's. hy = 0 always.
 template <class V>
 Inputs<V> CartesianInputs(const HalfDiffOf<V>& v) {
@@ -53,7 +59,7 @@ template <class V>
 Inputs<V> ElevationsInputs(const HalfDiffOf<V>& v) {
   const V x = v.dx * v.dx - v.dy * v.dy;
   const auto [root, log_theta] = ScaleTheta(v);
-  const V mean = v.cos_theta * v.dz, half_difference = v.sin_theta * v.dx;
+  const auto [mean, half_difference] = Elevations(v);
   return {mean * mean - half_difference * half_difference, root, log_theta, x, mean, v.dz};
 }
 
@@ -89,7 +95,7 @@ template <class V>
 Inputs<V> NonreciprocalInputs(const HalfDiffOf<V>& v) {
   const V x = v.dx * v.dx - v.dy * v.dy;
   const auto [root, log_theta] = ScaleTheta(v);
-  const V mean = v.cos_theta * v.dz, half_difference = v.sin_theta * v.dx;
+  const auto [mean, half_difference] = Elevations(v);
   return {mean - half_difference, root, log_theta, x, mean + half_difference, v.dz};
 }
 

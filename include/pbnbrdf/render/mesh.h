@@ -14,8 +14,7 @@ struct TriangleMesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  // one for each position, not of unit length; empty: flat triangles
   std::vector<std::array<std::uint32_t, 3>> triangles;  // positions, counterclockwise from outside
-  std::size_t left_out =
-      0;  // triangles of the file that have no area, and that `triangles` doesn't have
+  std::size_t left_out = 0;  // how many triangles of the file aren't there: they have no area
 };
 
 // Reads one of these; the file's first bytes say which:

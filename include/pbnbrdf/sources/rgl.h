@@ -40,13 +40,15 @@ class RglBrdf final : public Brdf {
   // divided by next to nothing.
   bool IsKnown(const DirectionPair& pair) const override;
 
-  // The same tables, interpolated over theta_i between the format's own way, linear, and a monotone cubic [2]
+  // As stored: the same, but known as far as the best estimate is, and everywhere as well.
+  //
+  // The likeliest: the same tables, interpolated over theta_i between the format's own way, linear, and a monotone cubic [2]
   // of log(v + 0.03), v being a table's value: four tenths of one and six of the other. With both
   // orders averaged, as a reciprocal fit has them, that is nearer to measurements that were left out than the
   // cubic alone.
   std::unique_ptr<Brdf> BestEstimate(Estimate estimate) const override;
 
-  // 1 at a measured theta_i, less in between: 1 / (1 + (8 d)^2), d the distance to the nearest one as a
+  // 1 at a measured theta_i, less in between: 1 / (1 + (7.7 d)^2), d the distance to the nearest one as a
   // fraction of the interval.
   double Certainty(const DirectionPair& pair) const override;
   std::optional<DirectionPair> NearestMeasured(const DirectionPair& pair) const override;
