@@ -5,8 +5,8 @@ set -eu
 cd "$(dirname "$0")"
 build=build
 packages="ccache clang-format-14 cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libembree-dev
-          libgmock-dev libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libopenexr-dev libpng-dev
-          libtbb-dev libzip-dev ninja-build nlohmann-json3-dev pkgconf"
+          libgmock-dev libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libjs-chart.js libopenexr-dev
+          libpng-dev libtbb-dev libzip-dev ninja-build nlohmann-json3-dev pkgconf"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -79,7 +79,8 @@ TXT
 
 # The Python packages that the tests of exported files need, in .peers. They skip without it.
 peers() {
-  packages="libllvm19 python3-venv"  # Mitsuba's LLVM variants compile with LLVM
+  # Mitsuba's LLVM variants compile with LLVM; the report's page is tested in Chromium.
+  packages="chromium libllvm19 python3-venv"
   install_packages
   [ -x .peers/bin/python ] || python3 -m venv .peers
   .peers/bin/python -m pip install --quiet --disable-pip-version-check -r tests/interop/requirements.txt

@@ -80,7 +80,7 @@ endfunction()
 # pbnbrdf_embed(TARGET FILE NAME): the text of FILE as the constant NAME, for TARGET's own sources, in a
 # header called as FILE is, with _text.h for its extension.
 function(pbnbrdf_embed target file name)
-  set(source ${PROJECT_SOURCE_DIR}/${file})
+  cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE source)
   get_filename_component(stem ${file} NAME_WE)
   set(folder ${PROJECT_BINARY_DIR}/embedded/${target})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})

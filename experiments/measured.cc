@@ -23,9 +23,9 @@
 #include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "problems.h"
+#include "render/studio.h"
 #include "results.h"
 #include "small_scene.h"
-#include "studio.h"
 #include "table.h"
 
 namespace pbnbrdf {

@@ -14,8 +14,8 @@
 #include "pbnbrdf/metrics/image_metrics.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "problems.h"
+#include "render/studio.h"
 #include "small_scene.h"
-#include "studio.h"
 #include "table.h"
 
 namespace pbnbrdf {

@@ -76,5 +76,6 @@ Command MeasureCommand();
 // With the render module only.
 Command FitSceneCommand();
 Command RenderCommand();
+Command ReportCommand();
 
 }  // namespace pbnbrdf::cli

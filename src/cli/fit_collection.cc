@@ -65,20 +65,14 @@ std::string FingerprintOf(const FitRequest& request) {
 }
 
 // One for each source; each has a name of its own, which files can have.
-std::vector<Entry> EntriesOf(const std::string& sources) {
+std::vector<Entry> EntriesOf(const std::string& text) {
+  const std::vector<std::string> sources = ExpandSources(text), names = NamesOfSources(sources);
   std::vector<Entry> entries;
-  std::map<std::string, std::string> known = {{kTable, "the table's name"}};
-  for (const std::string& source : ExpandSources(sources)) {
-    const std::string name = NameOfSource(source);
-    if (name.empty() || name.find('/') != std::string::npos) {
-      Fail(source, ": a file can't be named '", name, "'");
+  for (std::size_t n = 0; n < sources.size(); ++n) {
+    if (names[n].empty() || names[n] == kTable || names[n].find('/') != std::string::npos) {
+      Fail(sources[n], ": its files can't be named '", names[n], "'");
     }
-    const auto [at, is_new] = known.emplace(name, source);
-    if (!is_new) {
-      Fail(source, ": its files would be named ", name, ", as those of ", at->second,
-           "; fit it to another folder");
-    }
-    entries.push_back({name, source});
+    entries.push_back({names[n], sources[n]});
   }
   return entries;
 }
@@ -109,6 +103,7 @@ class Collection {
     RunJobs();
     line_.Clear();
     WriteTable();
+    if (options_.when_done && !Interrupted()) options_.when_done();
     return Conclude();
   }
 

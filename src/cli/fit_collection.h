@@ -15,6 +15,7 @@ struct CollectionOptions {
   int jobs = 0;  // fits at a time; 0: one for each core
   ProgressStyle progress = ProgressStyle::kTerminal;
   bool quiet = false;
+  std::function<void()> when_done = {};  // all fits that can be made are, and the table is written
 };
 
 // Fits each of the sources that request.material.source stands for (sources/source_list.h), and writes

@@ -1,14 +1,18 @@
 // pbnbrdf fit
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
 #include "command_line.h"
 #include "fit_collection.h"
+#include "fit_record.h"
 #include "pbnbrdf/base/files.h"
 #include "progress.h"
-#include "report.h"
 #include "solve/fit_fields.h"
+#ifdef PBNBRDF_HAS_RENDER
+#include "report_fits.h"
+#endif
 
 namespace pbnbrdf::cli {
 namespace {
@@ -17,6 +21,7 @@ struct FitCommandOptions {
   FitRequest request;
   std::string out, summary, trace;
   CollectionOptions collection;
+  bool report = false;  // with --out_dir
 };
 
 Fields FitCommandFields(FitCommandOptions* options) {
@@ -33,6 +38,10 @@ Fields FitCommandFields(FitCommandOptions* options) {
                            "with --out_dir: fits at a time; 0: one for each core"));
   fields.Add(Choice("progress", &options->collection.progress, kProgressStyles,
                     "with --out_dir: how progress is told, on standard error"));
+#ifdef PBNBRDF_HAS_RENDER
+  fields.AddCommon(Switch("report", &options->report,
+                          "with --out_dir: also make the page OUT_DIR/fits.html of all fits"));
+#endif
   fields.Add(FitFields(&options->request.setup.problem, &options->request.setup.options));
   return fields;
 }
@@ -103,6 +112,23 @@ int FitOne(const FitCommandOptions& options) {
   return 0;
 }
 
+int FitMany(const FitCommandOptions& options) {
+  CollectionOptions collection = options.collection;
+#ifdef PBNBRDF_HAS_RENDER
+  if (options.report) {
+    collection.when_done = [&] {
+      ReportRequest report;
+      report.which.fits = collection.out_dir;
+      report.out = std::filesystem::path(collection.out_dir) / "fits.html";
+      report.threads = options.request.setup.options.threads;
+      report.quiet = collection.quiet;
+      WriteReport(report);
+    };
+  }
+#endif
+  return FitCollection(options.request, collection);
+}
+
 int RunFit(const FitCommandOptions& options, const Arguments&) {
   CheckFlags([&] { ValidateFit(options.request.setup.problem, options.request.setup.options); });
   const std::string& out_dir = options.collection.out_dir;
@@ -110,8 +136,11 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
   if (!out_dir.empty() && !(options.summary.empty() && options.trace.empty())) {
     throw UsageError("--summary and --trace are for --out; --out_dir has a summary for each fit");
   }
+  if (out_dir.empty() && options.report) {
+    throw UsageError("--report is for --out_dir; pbnbrdf report makes the page of one fit");
+  }
   CatchInterrupt();
-  return out_dir.empty() ? FitOne(options) : FitCollection(options.request, options.collection);
+  return out_dir.empty() ? FitOne(options) : FitMany(options);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "fit_material.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/about.h"
 #include "pbnbrdf/sources/open_brdf.h"
 

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/timer.h"
+#include "fit_record.h"
 #include "material_options.h"
 #include "pbnbrdf/solve/problem_file.h"
-#include "report.h"
 
 namespace pbnbrdf::cli {
 

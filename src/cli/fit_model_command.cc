@@ -4,12 +4,12 @@
 
 #include "base/about.h"
 #include "command_line.h"
+#include "fit_record.h"
 #include "material_options.h"
 #include "models/fit_analytic_fields.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "problem/problem_fields.h"
-#include "report.h"
 
 namespace pbnbrdf::cli {
 namespace {

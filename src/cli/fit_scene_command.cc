@@ -8,6 +8,7 @@
 
 #include "base/timer.h"
 #include "command_line.h"
+#include "fit_record.h"
 #include "material_options.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/render/demand.h"
@@ -16,7 +17,6 @@
 #include "problem/problem_fields.h"
 #include "progress.h"
 #include "render_summary.h"
-#include "report.h"
 #include "solve/fit_fields.h"
 
 namespace pbnbrdf::cli {

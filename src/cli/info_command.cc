@@ -5,6 +5,7 @@
 #include <map>
 
 #include "command_line.h"
+#include "fit_record.h"
 #include "material_options.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/metrics/coverage.h"
@@ -13,7 +14,6 @@
 #include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/sampling.h"
 #include "pbnbrdf/sources/open_brdf.h"
-#include "report.h"
 
 namespace pbnbrdf::cli {
 namespace {

@@ -109,9 +109,9 @@ std::string HelpText(const Command& command, bool all) {
 
 // In the order in which people need them.
 std::vector<Command> Commands() {
-  return {FitCommand(),     MeasureCommand(),  InfoCommand(), EvalCommand(), ExportCommand(),
+  return {FitCommand(),     MeasureCommand(), InfoCommand(),     EvalCommand(), ExportCommand(),
 #ifdef PBNBRDF_HAS_RENDER
-          RenderCommand(),  FitSceneCommand(),
+          ReportCommand(),  RenderCommand(),  FitSceneCommand(),
 #endif
           CompareCommand(), FitModelCommand()};
 }

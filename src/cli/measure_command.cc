@@ -4,11 +4,9 @@
 
 #include "base/about.h"
 #include "command_line.h"
+#include "fit_record.h"
 #include "material_options.h"
-#include "pbnbrdf/models/analytic.h"
-#include "pbnbrdf/network/neural_brdf.h"
-#include "pbnbrdf/sources/open_brdf.h"
-#include "report.h"
+#include "opened_fit.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -24,9 +22,7 @@ struct MeasureCommandOptions {
 
 Fields MeasureCommandFields(MeasureCommandOptions* options) {
   Fields fields;
-  fields.AddRequired(Text("fit", &options->fit,
-                          "fitted network (.safetensors, or NBRDF's .h5 or fc1.npy) or analytic "
-                          "model (.json)"));
+  fields.AddRequired(FitField(&options->fit));
   fields.AddRequired(MaterialField(&options->material));
   fields.AddCommon(ScaleField(&options->material));
   fields.AddCommon(SymmetrizeField(&options->material.symmetrize));
@@ -36,24 +32,6 @@ Fields MeasureCommandFields(MeasureCommandOptions* options) {
   fields.AddCommon(
       Integer("seed", &options->measure.seed, AtLeast(0), "seed of the held-out samples"));
   return fields;
-}
-
-struct OpenedFit {
-  std::unique_ptr<Brdf> brdf;
-  std::size_t parameters;  // numbers that it stores
-};
-
-OpenedFit OpenFit(const std::string& source) {
-  std::unique_ptr<Brdf> brdf = OpenBrdf(source);
-  std::size_t parameters = 0;
-  if (const auto* network = dynamic_cast<const NeuralBrdf*>(brdf.get())) {
-    parameters = network->weights().size();
-  } else if (const auto* model = dynamic_cast<const AnalyticBrdf*>(brdf.get())) {
-    parameters = model->parameters().size();
-  } else {
-    Fail(source, ": neither a fitted network nor an analytic model");
-  }
-  return {std::move(brdf), parameters};
 }
 
 int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {

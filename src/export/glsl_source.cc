@@ -60,10 +60,11 @@ vec4 @name@_activate(vec4 x) {
 
 float @name@_reflectance(float z) { return @reflectance@; }
 
+@constants@
 vec3 @name@_eval(vec3 wi, vec3 wo) {
   if (!(wi.z > 0.0 && wo.z > 0.0)) return vec3(0.0);
-  vec4 x0_0, x0_1;
-  @name@_encode(wi, wo, x0_0, x0_1);
+  vec4 x0[2];
+  @name@_encode(wi, wo, x0[0], x0[1]);
 @layers@  return vec3(@name@_reflectance(z.x), @name@_reflectance(z.y), @name@_reflectance(z.z));
 }
 )";
@@ -113,19 +114,35 @@ std::string Matrix(const LayerWeights& layer, int row, int column) {
   return StrCat("mat4(", Join(columns, ", "), ")");
 }
 
-// The vectors x<l+1>_0, x<l+1>_1, ... from x<l>_0, x<l>_1, ..., or z from the last ones.
-std::string Pass(const LayerWeights& layer, int l) {
-  std::string text;
-  for (int o = 0; o < Quads(layer.out); ++o) {
-    const std::string to =
-        layer.hidden ? StrCat("x", l + 1, "_", o, " = @name@_activate(") : "z = ";
-    text += StrCat("  vec4 ", to, "vec4(", Column(layer, 4 * o, layer.in), ")");
-    for (int i = 0; i < Quads(layer.in); ++i) {
-      text += StrCat("\n      + ", Matrix(layer, 4 * o, 4 * i), " * x", l, "_", i);
-    }
-    text += layer.hidden ? ");\n" : ";\n";
+// The weights of a layer as constants, row of units by row of units: for each four units their biases, and the
+// matrices that take four values each to them.
+std::string Constants(const LayerWeights& layer, int l) {
+  const int outs = Quads(layer.out), ins = Quads(layer.in);
+  std::vector<std::string> biases, matrices;
+  for (int o = 0; o < outs; ++o) {
+    biases.push_back(StrCat("vec4(", Column(layer, 4 * o, layer.in), ")"));
+    for (int i = 0; i < ins; ++i) matrices.push_back(Matrix(layer, 4 * o, 4 * i));
   }
-  return text;
+  const auto array = [&](const char* type, const char* name,
+                         const std::vector<std::string>& values) {
+    return StrCat("const ", type, " @name@_", name, l, "[", values.size(), "] = ", type, "[](\n  ",
+                  Join(values, ",\n  "), ");\n");
+  };
+  return array("vec4", "b", biases) + array("mat4", "w", matrices);
+}
+
+// x<l+1> from x<l>, or z from the last ones.
+std::string Pass(const LayerWeights& layer, int l) {
+  const int outs = Quads(layer.out), ins = Quads(layer.in);
+  const std::string sum = StrCat("@name@_b", l, "[o]"), x = StrCat("x", l);
+  if (!layer.hidden) {
+    return StrCat("  vec4 z = @name@_b", l, "[0];\n  for (int i = 0; i < ", ins,
+                  "; ++i) z += @name@_w", l, "[i] * ", x, "[i];\n");
+  }
+  return StrCat("  vec4 x", l + 1, "[", outs, "];\n  for (int o = 0; o < ", outs,
+                "; ++o) {\n    vec4 z = ", sum, ";\n    for (int i = 0; i < ", ins,
+                "; ++i) z += @name@_w", l, "[", ins, " * o + i] * ", x, "[i];\n    x", l + 1,
+                "[o] = @name@_activate(z);\n  }\n");
 }
 
 void CheckGlslName(const std::string& name) {
@@ -140,9 +157,12 @@ void CheckGlslName(const std::string& name) {
 std::string GlslSource(const NeuralBrdf& fitted, const std::string& name) {
   const NeuralBrdf network = fitted.WithRgbOutputs();
   CheckGlslName(name);
-  std::string layers;
+  std::string constants, layers;
   int number = 0;
-  for (const LayerWeights& layer : network.Layers()) layers += Pass(layer, number++);
+  for (const LayerWeights& layer : network.Layers()) {
+    constants += Constants(layer, number);
+    layers += Pass(layer, number++);
+  }
   const NetworkShape& shape = network.shape();
   const std::string text = FillIn(
       kSource,
@@ -154,6 +174,7 @@ std::string GlslSource(const NeuralBrdf& fitted, const std::string& name) {
        {"encode", EncodeBody(shape.encoding())},
        {"activate", PrintExpression(kGlsl, Activate(shape.activation(), Term::Variable("x")))},
        {"reflectance", PrintExpression(kGlsl, ClampedReflectance(Term::Variable("z")))},
+       {"constants", constants},
        {"layers", layers}});
   return FillIn(text, {{"about", CommentText(network)}, {"name", name}});
 }

@@ -123,8 +123,8 @@ SphereShape ReadSphere(const JsonValue& json, const Affine& map) {
 
 class SceneReader {
  public:
-  SceneReader(const std::string& path, const SceneChanges& changes)
-      : folder_(std::filesystem::path(path).parent_path()), changes_(changes) {}
+  SceneReader(const std::filesystem::path& folder, const SceneChanges& changes)
+      : folder_(folder), changes_(changes) {}
 
   Scene Read(const JsonValue& json) {
     json.CheckKeys({"camera", "film", "materials", "shapes", "lights"});
@@ -276,7 +276,17 @@ class SceneReader {
 
 Scene ReadScene(const std::string& path, const SceneChanges& changes) {
   const std::string text = ReadFile(path, kMaxFileBytes);
-  return About(path, [&] { return SceneReader(path, changes).Read(JsonValue::Parse(text)); });
+  return About(
+      path, [&] { return ParseScene(text, std::filesystem::path(path).parent_path(), changes); });
+}
+
+Scene ParseScene(const std::string& text, const std::string& folder, const SceneChanges& changes) {
+  return SceneReader(folder, changes).Read(JsonValue::Parse(text));
+}
+
+Film WithWidth(const Film& film, int width) {
+  const double height = 1.0 * film.height / film.width * width;
+  return {width, std::max(1, static_cast<int>(std::lround(height)))};
 }
 
 }  // namespace pbnbrdf

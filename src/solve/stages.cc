@@ -120,11 +120,11 @@ class Stages {
     const int before = training_.summary().iterations;
     training_.Minimize(max_iterations, [&](int iteration, double cost) {
       if (!training_.Report(iteration, cost)) end = End::kInterrupted;
-      if (traits.is_stochastic || end != End::kNone) return end == End::kNone;
-      const double validation = training_.ValidationCost();
       Signs signs;
       signs.iterations = iteration;
-      signs.error = training_.ValidationError();
+      signs.error = training_.RecordError(iteration);
+      if (traits.is_stochastic || end != End::kNone) return end == End::kNone;
+      const double validation = training_.ValidationCost();
       signs.overfit = validation / cost;
       signs.is_slow = slow.Observe(cost);
       signs.is_poor = poor.Observe(validation);

@@ -238,6 +238,12 @@ bool Training::Report(int iteration, double cost) {
   });
 }
 
+double Training::RecordError(int iteration) {
+  const double error = ValidationError();
+  summary_.history.push_back({summary_.iterations + iteration, timer_.Seconds(), error});
+  return error;
+}
+
 void Training::Finish() {
   summary_.seconds = timer_.Seconds();
   summary_.samples = samples_.size();

@@ -63,6 +63,9 @@ class Training {
   // Tells the user, if there is one, who may stop the fit.
   bool Report(int iteration, double cost);
 
+  // ValidationError(), which the summary's history keeps.
+  double RecordError(int iteration);
+
   // Completes the summary.
   void Finish();
 

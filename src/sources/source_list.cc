@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "base/hash.h"
 #include "base/text.h"
@@ -69,6 +70,14 @@ std::vector<std::string> Expand(const std::string& part) {
   return std::filesystem::exists(part) ? std::vector{part} : FilesLike(part);
 }
 
+// What tells sources of the same name apart.
+std::string KindOfSource(const std::string& source) {
+  for (const std::string_view prefix : {kBuiltin, kSgd}) {
+    if (source.starts_with(prefix)) return std::string(prefix.substr(0, prefix.size() - 1));
+  }
+  return std::filesystem::absolute(source).parent_path().filename();
+}
+
 }  // namespace
 
 std::vector<std::string> ExpandSources(const std::string& text) {
@@ -87,6 +96,21 @@ std::string NameOfSource(const std::string& source) {
   if (source.starts_with(kBuiltin)) return source.substr(kBuiltin.size());
   const Parts parts(source);
   return parts.material.empty() ? std::filesystem::path(source).stem().string() : parts.material;
+}
+
+std::vector<std::string> NamesOfSources(const std::vector<std::string>& sources) {
+  std::map<std::string, int> uses;
+  for (const std::string& source : sources) ++uses[NameOfSource(source)];
+  std::vector<std::string> names;
+  std::map<std::string, std::string> known;
+  for (const std::string& source : sources) {
+    std::string name = NameOfSource(source);
+    if (uses[name] > 1) name = StrCat(KindOfSource(source), "-", name);
+    const auto [at, is_new] = known.emplace(name, source);
+    if (!is_new) Fail(source, " and ", at->second, " would both be named ", name);
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 std::uint64_t SourceFingerprint(const std::string& source) {

@@ -18,6 +18,10 @@ std::vector<std::string> ExpandSources(const std::string& text);
 // A name for what is made of a source: the file's without its ending, or the material's.
 std::string NameOfSource(const std::string& source);
 
+// The names of several: where two would be the same, the folder's name, "sgd" or "builtin" comes before them, as in
+// "sgd-nylon". Throws Error if two are the same all the same.
+std::vector<std::string> NamesOfSources(const std::vector<std::string>& sources);
+
 // A number for the source and the content of its files (base/hash.h). Throws Error if one can't be read.
 std::uint64_t SourceFingerprint(const std::string& source);
 

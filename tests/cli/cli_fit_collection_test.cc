@@ -93,10 +93,11 @@ TEST_F(CliFitCollection, RefusesWhatCannotBeAFolderOfFits) {
   ExpectError(Fit(a, out), 2, "--out or --out_dir is required");
   ExpectError(Fit(a, "--trace=" + Path("out")), 2, "--summary and --trace are for --out");
   ExpectError(Fit(Path("none*.csv")), 1, "none*.csv: nothing has a name like this");
-  ExpectError(Fit(a + ";" + Path("more/a.csv")), 1,
-              "more/a.csv: its files would be named a, as those of");
-  ExpectError(Fit(Path("fits.csv")), 1,
-              "its files would be named fits, as those of the table's name");
+  std::filesystem::create_directories(Path("other/more"));
+  WriteMaterial("other/more/a.csv", 0.2);
+  ExpectError(Fit(Path("more/a.csv") + ";" + Path("other/more/a.csv")), 1,
+              "would both be named more-a");
+  ExpectError(Fit(Path("fits.csv")), 1, "its files can't be named 'fits'");
   ExpectError(Fit(a, "--out_dir=" + a + "/fits"), 1, "cannot write");
 }
 

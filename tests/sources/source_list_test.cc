@@ -60,5 +60,15 @@ TEST_F(SourceList, FingerprintsChangeWithTheContent) {
   EXPECT_NE(SourceFingerprint(folder_ / "x_fc1.npy"), network);
 }
 
+TEST(NamesOfSources, TellSourcesOfTheSameNameApart) {
+  EXPECT_THAT(
+      NamesOfSources({"merl/gold.binary", "sgd:p.csv#gold", "builtin:gold", "sgd:p.csv#nylon"}),
+      testing::ElementsAre("merl-gold", "sgd-gold", "builtin-gold", "nylon"));
+  EXPECT_THAT(ErrorOf([] {
+                NamesOfSources({"a/x/gold.binary", "b/x/gold.csv"});
+              }),
+              testing::HasSubstr("would both be named x-gold"));
+}
+
 }  // namespace
 }  // namespace pbnbrdf

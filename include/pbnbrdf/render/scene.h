@@ -22,6 +22,9 @@ struct Film {
   int width = 512, height = 512;
 };
 
+// In the same proportions; width >= 1.
+Film WithWidth(const Film& film, int width);
+
 struct SceneMaterial {
   std::string name;
   std::string source;            // for the caller's MaterialOpener (render.h)
@@ -84,5 +87,9 @@ struct SceneChanges {
 // Throws Error "FILE: shapes[2].radius: must be > 0", with the place in the file. For an unknown key it
 // suggests the nearest known one.
 Scene ReadScene(const std::string& path, const SceneChanges& changes = {});
+
+// The same of a text that is already in memory; files that it names are in `folder`.
+Scene ParseScene(const std::string& text, const std::string& folder,
+                 const SceneChanges& changes = {});
 
 }  // namespace pbnbrdf

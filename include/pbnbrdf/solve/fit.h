@@ -104,6 +104,14 @@ struct EnergySummary {
   EnergyWork work;
 };
 
+// How far a fit was, and when.
+struct FitMoment {
+  int iteration = 0;
+  double seconds = 0.0;  // as FitSummary::seconds
+  double error =
+      0.0;  // mean |eq. 6| over samples that no solver sees, drawn as those of the fit are
+};
+
 struct FitSummary {
   double final_cost = 0.0;  // fit_problem.h
   int iterations = 0;       // of all stages
@@ -112,8 +120,9 @@ struct FitSummary {
   // take; of all stages.
   int failed_factorizations = 0;
   int rejected_steps = 0;
-  std::size_t samples = 0;  // that the fit used in the end
-  EnergySummary energy;     // of a fit with the energy term
+  std::size_t samples = 0;         // that the fit used in the end
+  EnergySummary energy;            // of a fit with the energy term
+  std::vector<FitMoment> history;  // of the start of each stage, and of each iteration
   // Of single precision only: rounding changes the final cost by more than a hundredth, so that
   // double precision would have gone further.
   bool precision_limited = false;

@@ -1,4 +1,4 @@
-#include "studio.h"
+#include "render/studio.h"
 
 namespace pbnbrdf {
 

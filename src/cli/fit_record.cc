@@ -1,4 +1,4 @@
-#include "report.h"
+#include "fit_record.h"
 
 #include <cmath>
 #include <iomanip>
@@ -30,10 +30,41 @@ constexpr double kAlbedoPart = 0.25;  // of the time, for the albedos of the mat
 constexpr int kTrialAngles = 10, kTrials = 4;
 constexpr double kChecksPerAngle = 1.7;  // with refinements and reciprocity
 
+constexpr std::size_t kMaxMoments = 400;  // of a fit's history in the summary
+
 constexpr double kExplainsNothing = 0.8;  // HeldOutErrors::relative_error
 // Largest values (1/sr) beyond which the unit is in doubt: dark materials, too, reflect more than the one at some
 // pair of directions, and only mirrors more than the other.
 constexpr double kMinLargest = 1e-3, kMaxLargest = 1e4;
+
+constexpr MeasureMeaning kMeanings[] = {
+    {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
+    {"relative_error", "mean |f cos - f^ cos| / mean |f cos|"},
+    {"error_at_measured",
+     "mean_abs_log_error at measured directions, where others are interpolated between them"},
+    {"reciprocal_floor",
+     "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
+    {"measured_part", "of all pairs of directions: where the material is known, or nearly"},
+    {"measured_in_plane", "whether only one plane through the normal was measured"},
+    {"measured_negative", "part of the measured values with a channel below 0"},
+    {"measured_noise", "1/sr, at most: by how much neighbouring values differ, in the median"},
+    {"rmse", "root mean square error of f cos, 1/sr"},
+    {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
+    {"hcl", "Helmholtz continuity loss (eq. 9)"},
+    {"max_directional_albedo", "over all incident directions; above 1 the fit creates energy"},
+    {"energy", "certified if max_directional_albedo is at most 1 + 1e-6"},
+    {"eal", "energy amplification loss (eq. 5), sr"},
+    {"material_max_directional_albedo", "of the material itself, up to 85 degrees"},
+    {"material_energy", "above 1, no fit that conserves energy can equal the material"},
+    {"chromaticity_error", "mean |log1p(|f cos|^2) - log1p(|f^ cos|^2)| (eq. 7)"},
+    {"delta_e_mean", "mean CIE Delta E 2000 of the lit colour, pi f cos cut to [0, 1]"},
+    {"delta_e_p95", "its 95th percentile; about 1 is just visible"},
+    {"dark_hue_chroma_mean", "sqrt(da^2 + db^2) in CIELAB where the lit luminance is at most 0.1"},
+    {"dark_hue_chroma_p95", "its 95th percentile"},
+    {"parameters", "numbers that the fit stores"},
+    {"samples", "number of held-out samples"},
+    {"dark_samples", "number of those with a lit luminance of at most 0.1"},
+    {"cut_short", "whether there was time for fewer samples, or not for the material's energy"}};
 
 // "certified", or by how much and where a directional albedo exceeds 1.
 std::string EnergyVerdict(const Energy& energy) {
@@ -84,6 +115,16 @@ Json EnergyJson(const EnergySummary& energy) {
           {"albedos_skipped", energy.work.albedos_skipped},
           {"jacobians", energy.work.jacobians},
           {"jacobians_skipped", energy.work.jacobians_skipped}};
+}
+
+// Of at most kMaxMoments of the moments: [iteration, seconds, error] each.
+Json HistoryJson(const std::vector<FitMoment>& history) {
+  Json json = Json::array();
+  const std::size_t stride = history.size() / kMaxMoments + 1;
+  for (std::size_t n = 0; n < history.size(); n += stride) {
+    json.push_back({history[n].iteration, history[n].seconds, history[n].error});
+  }
+  return json;
 }
 
 std::string TermsText(TermOptions terms) { return TermFields(&terms).Find("terms")->text(); }
@@ -176,36 +217,9 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
           {"cautions", cautions}};
 }
 
+std::span<const MeasureMeaning> MeasureMeanings() { return kMeanings; }
+
 std::string MeasuresText(const Json& measures) {
-  constexpr std::pair<const char*, const char*> kMeanings[] = {
-      {"mean_abs_log_error", "mean |log1p(f cos) - log1p(f^ cos)| (eq. 6)"},
-      {"relative_error", "mean |f cos - f^ cos| / mean |f cos|"},
-      {"error_at_measured",
-       "mean_abs_log_error at measured directions, where others are interpolated between them"},
-      {"reciprocal_floor",
-       "least mean_abs_log_error of any reciprocal fit: half the material's own difference"},
-      {"measured_part", "of all pairs of directions: where the material is known, or nearly"},
-      {"measured_in_plane", "whether only one plane through the normal was measured"},
-      {"measured_negative", "part of the measured values with a channel below 0"},
-      {"measured_noise", "1/sr, at most: by how much neighbouring values differ, in the median"},
-      {"rmse", "root mean square error of f cos, 1/sr"},
-      {"hrl", "Helmholtz reciprocity loss (eq. 8)"},
-      {"hcl", "Helmholtz continuity loss (eq. 9)"},
-      {"max_directional_albedo", "over all incident directions; above 1 the fit creates energy"},
-      {"energy", "certified if max_directional_albedo is at most 1 + 1e-6"},
-      {"eal", "energy amplification loss (eq. 5), sr"},
-      {"material_max_directional_albedo", "of the material itself, up to 85 degrees"},
-      {"material_energy", "above 1, no fit that conserves energy can equal the material"},
-      {"chromaticity_error", "mean |log1p(|f cos|^2) - log1p(|f^ cos|^2)| (eq. 7)"},
-      {"delta_e_mean", "mean CIE Delta E 2000 of the lit colour, pi f cos cut to [0, 1]"},
-      {"delta_e_p95", "its 95th percentile; about 1 is just visible"},
-      {"dark_hue_chroma_mean",
-       "sqrt(da^2 + db^2) in CIELAB where the lit luminance is at most 0.1"},
-      {"dark_hue_chroma_p95", "its 95th percentile"},
-      {"parameters", "numbers that the fit stores"},
-      {"samples", "number of held-out samples"},
-      {"dark_samples", "number of those with a lit luminance of at most 0.1"},
-      {"cut_short", "whether there was time for fewer samples, or not for the material's energy"}};
   std::ostringstream text;
   for (const auto& [key, meaning] : kMeanings) {
     const auto& value = measures.at(key);
@@ -255,6 +269,7 @@ Json FitSummaryJson(const Fit& fit, const FitSubject& subject, Json measures) {
   measures["seed"] = fit.problem.sampling.seed;
   measures["termination"] = NameOf(kTerminations, summary.termination);
   measures["message"] = summary.message;
+  measures["history"] = HistoryJson(summary.history);
   measures["version"] = PBNBRDF_VERSION;
   measures["problem"] = subject.flagfile;
   return measures;

@@ -1,7 +1,8 @@
-// report.h: what a fit leaves behind besides its weights: measures, metadata and summary.
+// fit_record.h: what a fit leaves behind besides its weights: measures, metadata and summary.
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,15 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
 // What to beware of in a material, a sentence each: only a plane was measured, or values look like those of
 // another unit.
 std::vector<std::string> Cautions(const Coverage& coverage);
+
+// What a measure is: its unit, and what it means.
+struct MeasureMeaning {
+  const char* key;
+  const char* meaning;
+};
+
+// Of the measures that people read, in the order in which they are shown.
+std::span<const MeasureMeaning> MeasureMeanings();
 
 // A line for each key, with its unit and meaning, and for each of its "cautions".
 std::string MeasuresText(const Json& measures);

@@ -1,4 +1,4 @@
-// studio.h: images of a scene with one material after another in the place of its own.
+// studio.h: images of a scene with one material after another in the place of its own, to be compared.
 #pragma once
 
 #include <functional>
