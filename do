@@ -111,6 +111,9 @@ experiments() {
   fi
   shift
   command -v gnuplot > /dev/null || packages="$packages gnuplot-nox"
+  case $name in
+    paper | picture) command -v montage > /dev/null || packages="$packages fonts-dejavu-core imagemagick" ;;
+  esac
   case " $*" in
     *" --peer="*) packages="$packages libopenblas0-pthread python3-numpy python3-torch" ;;
   esac

@@ -4,8 +4,10 @@
 
 namespace pbnbrdf {
 
-FitSetup ShippedProblem(const std::string& name) {
-  return ReadProblem(StrCat(PBNBRDF_PROBLEMS "/", name, ".flags"));
+std::string ShippedProblemFile(const std::string& name) {
+  return StrCat(PBNBRDF_PROBLEMS "/", name, ".flags");
 }
+
+FitSetup ShippedProblem(const std::string& name) { return ReadProblem(ShippedProblemFile(name)); }
 
 }  // namespace pbnbrdf

@@ -7,7 +7,10 @@
 
 namespace pbnbrdf {
 
-// problems/NAME.flags. Throws Error as ReadProblem does.
+// problems/NAME.flags.
+std::string ShippedProblemFile(const std::string& name);
+
+// What it says. Throws Error as ReadProblem does.
 FitSetup ShippedProblem(const std::string& name);
 
 }  // namespace pbnbrdf
