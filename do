@@ -1,5 +1,5 @@
 #!/bin/sh
-# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize.
+# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize | deb | deb-test.
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
@@ -101,6 +101,33 @@ sanitize() {
     --exclude-regex '^(package|interop_.*|GlslSource\..*)$'
 }
 
+# Debian packages: the program, and the library.
+deb() {
+  packages="$packages dpkg-dev file"
+  build
+  (cd "$build" && cpack -G DEB)
+}
+
+# Installs the package in a clean Debian root, fits there, and removes it.
+deb_test() {
+  packages="$packages debootstrap"
+  deb
+  root=$(mktemp -d)
+  trap 'as_root umount "$root/proc" 2> /dev/null; as_root rm -rf "$root"' EXIT
+  as_root debootstrap --variant=minbase bookworm "$root" > "$build/debootstrap.log"
+  as_root cp "$build"/pbnbrdf_*.deb "$root/"
+  as_root mount -t proc proc "$root/proc"
+  before=$(date +%s)
+  as_root chroot "$root" sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends /pbnbrdf_*.deb' \
+    > "$build/deb_test.log" 2>&1
+  echo "installed in $(($(date +%s) - before)) s"
+  as_root chroot "$root" pbnbrdf fit --material=builtin:satin-gold --max_iterations=20 --out=/gold.safetensors
+  as_root chroot "$root" pbnbrdf report --fit=/gold.safetensors --out=/gold.html
+  as_root chroot "$root" test -s /usr/share/man/man1/pbnbrdf.1.gz -a -s /usr/share/bash-completion/completions/pbnbrdf
+  as_root chroot "$root" dpkg --purge pbnbrdf
+  as_root chroot "$root" test ! -e /usr/bin/pbnbrdf
+}
+
 # experiments NAME [ARGUMENT ...]: the program experiments/NAME.cc; its tables and figures go to build/results.
 experiments() {
   name=${1:-}
@@ -129,8 +156,10 @@ case ${1:-} in
   bench) build microbenchmarks && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
+  deb) deb ;;
+  deb-test) deb_test ;;
   *)
-    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize" >&2
+    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize | deb | deb-test" >&2
     exit 2
     ;;
 esac

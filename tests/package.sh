@@ -13,6 +13,15 @@ rm -rf "$3/package_test"
 "$1" --build "$build"
 "$build/fit_gold" "$build/gold.safetensors"
 "$prefix/bin/pbnbrdf" info "$build/gold.safetensors"
+# The same by pkg-config.
+# shellcheck disable=SC2046
+c++ -o "$build/by_pkg_config" "$2/examples/library/fit_gold.cc" \
+  $(PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name pbnbrdf.pc)") pkg-config --cflags --libs pbnbrdf)
+"$build/by_pkg_config" "$build/gold.safetensors"
+# What the program says of itself, where man and bash look for it.
+gzip -cd "$prefix/share/man/man1/pbnbrdf.1.gz" | grep -q '^\.SS fit$'
+bash -c 'source "$1"; COMP_WORDS=(pbnbrdf exp); COMP_CWORD=1; _pbnbrdf; [ "${COMPREPLY[*]}" = export ]' - \
+  "$prefix/share/bash-completion/completions/pbnbrdf"
 # The README shows this very program.
 awk '/^```cpp/ {inside = 1; next} /^```/ {inside = 0} inside' "$2/README.md" > "$build/readme.cc"
 diff "$build/readme.cc" "$2/examples/library/fit_gold.cc"

@@ -41,11 +41,12 @@ inline Range Between(double min, double max) { return {.min = min, .max = max}; 
 // One field of one object, which must outlive it. Errors are Errors that begin with the name.
 struct Field {
   std::string name, help;
-  std::string default_text;  // the value of the object when the field was made
-  bool is_switch = false;    // of type bool
-  bool is_common = false;    // --help shows it, not only --help=all
-  bool is_required = false;  // its text must not be empty
-  std::string group;         // the heading that it stands under
+  std::string default_text;          // the value of the object when the field was made
+  bool is_switch = false;            // of type bool
+  bool is_common = false;            // --help shows it, not only --help=all
+  bool is_required = false;          // its text must not be empty
+  std::string group;                 // the heading that it stands under
+  std::vector<std::string> choices;  // all that the text may be; none: anything
 
   std::function<void(std::string_view text)> set;  // throws Error if the text is no value of it
   std::function<std::string()> text;               // of the value; set() reads it back exactly
@@ -70,17 +71,19 @@ Field Custom(std::string name, std::function<void(std::string_view)> parse,
 template <typename Enum, std::size_t N>
 Field Choice(std::string name, Enum* value, const NameTable<Enum, N>& table,
              const std::string& help) {
-  return Custom(
+  Field field = Custom(
       name, [name, value, &table](std::string_view text) { *value = ParseName(table, name, text); },
       [value, &table] { return std::string(NameOf(table, *value)); }, [] {},
       help + " (" + JoinNames(table) + ")");
+  for (const auto& [choice, _] : table) field.choices.emplace_back(choice);
+  return field;
 }
 
 // The same, or "auto", which stands for no value.
 template <typename Enum, std::size_t N>
 Field ChoiceOrAuto(std::string name, std::optional<Enum>* value, const NameTable<Enum, N>& table,
                    const std::string& help) {
-  return Custom(
+  Field field = Custom(
       name,
       [name, value, &table](std::string_view text) {
         NameTable<std::optional<Enum>, N + 1> names = {{{"auto", std::nullopt}}};
@@ -89,6 +92,9 @@ Field ChoiceOrAuto(std::string name, std::optional<Enum>* value, const NameTable
       },
       [value, &table] { return *value ? std::string(NameOf(table, **value)) : "auto"; }, [] {},
       help + " (auto | " + JoinNames(table) + ")");
+  field.choices = {"auto"};
+  for (const auto& [choice, _] : table) field.choices.emplace_back(choice);
+  return field;
 }
 
 // A flag isn't one, has no value, or has one that can't be.
