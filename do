@@ -1,5 +1,5 @@
 #!/bin/sh
-# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize | deb | deb-test.
+# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize | wheel | deb | deb-test.
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
@@ -65,6 +65,10 @@ demo() {
     echo "   pbnbrdf eval --material=$source --directions=- --out=-"
     echo "$pairs" | $pbnbrdf eval --material=$source --directions=- --out=-
   done
+  echo
+  echo "4. A page that shows both, to open in a browser:"
+  echo "   pbnbrdf report --fit=gold.safetensors --out=gold.html"
+  $pbnbrdf report --fit=$build/gold.safetensors --out=$build/gold.html
   cat <<TXT
 
 Next: fit a material of your own, a MERL file for instance,
@@ -128,6 +132,21 @@ deb_test() {
   as_root chroot "$root" test ! -e /usr/bin/pbnbrdf
 }
 
+# The Python package as a wheel in build/wheel, and its tests in an environment that has nothing else.
+wheel() {
+  packages="$packages python3-dev python3-venv"
+  install_packages
+  mkdir -p "$build/wheel"
+  rm -f "$build"/wheel/*.whl
+  [ -x .wheel/bin/python ] || python3 -m venv .wheel
+  .wheel/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$build/wheel" .
+  rm -rf "$build/wheel/clean"
+  python3 -m venv "$build/wheel/clean"
+  "$build/wheel/clean/bin/python" -m pip install --quiet --disable-pip-version-check "$build"/wheel/*.whl pytest
+  "$build/wheel/clean/bin/python" -m pytest -q -p no:cacheprovider tests/python
+  ls -l "$build"/wheel/*.whl
+}
+
 # experiments NAME [ARGUMENT ...]: the program experiments/NAME.cc; its tables and figures go to build/results.
 experiments() {
   name=${1:-}
@@ -156,10 +175,11 @@ case ${1:-} in
   bench) build microbenchmarks && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
+  wheel) wheel ;;
   deb) deb ;;
   deb-test) deb_test ;;
   *)
-    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize | deb | deb-test" >&2
+    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize | wheel | deb | deb-test" >&2
     exit 2
     ;;
 esac

@@ -22,7 +22,7 @@ only() {
 }
 only 'gflags|glog' cli
 only 'ceres|Eigen' models residuals problem solve
-only 'nlohmann' base models network render report cli
+only 'nlohmann' base measure models network render report cli
 only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image
 only 'embree' render

@@ -56,7 +56,7 @@ std::string PictureGrid::Write(const std::string& png) const {
   const std::string parts = png + ".parts";
   std::filesystem::create_directories(parts);
   // Letters that leave room for 30 of them below a picture.
-  const int points = std::max(6, pictures_.at(0).image.width / 17);
+  const int points = std::max(6, pictures_.at(0).image.width / 19);
   std::vector<std::string> command = {"montage",     "-background", "white",       "-font",
                                       "DejaVu-Sans", "-pointsize",  StrCat(points)};
   for (std::size_t n = 0; n < pictures_.size(); ++n) {

@@ -57,9 +57,9 @@ Fields ExportFields(ExportOptions* options) {
       },
       [options] { return options->format; }, [] {}, FormatNames() + ", see below"));
   fields.AddRequired(Text("out", &options->out, "file to write; - is standard output"));
-  fields.AddCommon(
-      Text("name", &options->name,
-           "c and glsl: the function is called NAME_eval; by default, NAME is that of the file"));
+  fields.AddCommon(Text("name", &options->name,
+                        "c, glsl: the function is called NAME_eval; torch: the class is called "
+                        "NAME; by default, NAME is that of the file"));
   return fields;
 }
 

@@ -91,6 +91,9 @@ constexpr ExportFormat kFormats[] = {
      MitsubaFiles},
     {"onnx", "a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32",
      OneFile<OnnxModel>},
+    {"torch",
+     "FILE.py with a torch.nn.Module, NAME: brdf(wi, wo), ... x 3 each, in double precision",
+     OneFile<TorchModule>},
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 //
 // [1] W. Jakob et al. Mitsuba 3 renderer. https://mitsuba-renderer.org
 // [2] Open Neural Network Exchange. https://onnx.ai, onnx/onnx.proto.
+// [3] PyTorch. https://pytorch.org
 #pragma once
 
 #include <string>
@@ -55,6 +56,11 @@ std::string MitsubaPlugin(const std::string& network, const LobeProposal& propos
 //
 // Throws Error if a weight is beyond float32.
 std::string OnnxModel(const NeuralBrdf& network);
+
+// A Python file with a class NAME, a torch.nn.Module [3] with the network's weights as parameters: called with wi and wo
+// (... x 3), it gives rgb (... x 3) as of CSource, in the precision of its parameters, double at first, and with
+// gradients. It needs nothing but torch. name: an identifier. Throws Error otherwise.
+std::string TorchModule(const NeuralBrdf& network, const std::string& name);
 
 // A CSV with the columns theta_i,phi_i,theta_o,phi_o (radians) and r,g,b (linear, 1/sr, without the
 // cosine), one header line. The grid is one of Rusinkiewicz angles:
