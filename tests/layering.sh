@@ -20,9 +20,9 @@ only() {
     status=1
   fi
 }
-only 'gflags|glog' cli
+only 'gflags|glog' cli python
 only 'ceres|Eigen' models residuals problem solve
-only 'nlohmann' base measure models network render report cli
+only 'nlohmann' base measure models network render report cli python
 only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image
 only 'embree' render

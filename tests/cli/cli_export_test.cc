@@ -14,8 +14,9 @@ TEST_F(Cli, ExportWritesEveryFormat) {
                 .status,
             0);
   const std::map<std::string, std::string> files = {
-      {"npy", "x_fc1.npy"}, {"h5", "x.h5"},     {"merl", "x.binary"}, {"csv", "x.csv"},
-      {"c", "x.h"},         {"glsl", "x.glsl"}, {"mitsuba", "x.py"},  {"onnx", "x.onnx"}};
+      {"npy", "x_fc1.npy"}, {"h5", "x.h5"},     {"merl", "x.binary"},
+      {"csv", "x.csv"},     {"c", "x.h"},       {"glsl", "x.glsl"},
+      {"mitsuba", "x.py"},  {"onnx", "x.onnx"}, {"torch", "y.py"}};
   const std::string help = Run("export --help").out;
   for (const auto& [format, file] : files) {
     EXPECT_THAT(help, HasSubstr("  " + format + " "));
@@ -24,7 +25,7 @@ TEST_F(Cli, ExportWritesEveryFormat) {
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_TRUE(std::filesystem::exists(Path(file))) << format;
   }
-  EXPECT_THAT(help, HasSubstr("npy | h5 | merl | csv | c | glsl | mitsuba | onnx"));
+  EXPECT_THAT(help, HasSubstr("npy | h5 | merl | csv | c | glsl | mitsuba | onnx | torch"));
   EXPECT_EQ(NeuralBrdf::Read(Path("x_weights.safetensors")).weights(),
             NeuralBrdf::Read(network).weights());
   // The CSV names the directions that its values are at; they alone are evaluated again.
