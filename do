@@ -142,7 +142,8 @@ wheel() {
   .wheel/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$build/wheel" .
   rm -rf "$build/wheel/clean"
   python3 -m venv "$build/wheel/clean"
-  "$build/wheel/clean/bin/python" -m pip install --quiet --disable-pip-version-check "$build"/wheel/*.whl pytest
+  "$build/wheel/clean/bin/python" -m pip install --quiet --disable-pip-version-check "$build"/wheel/*.whl \
+    -r tests/python/requirements.txt
   "$build/wheel/clean/bin/python" -m pytest -q -p no:cacheprovider tests/python
   ls -l "$build"/wheel/*.whl
 }

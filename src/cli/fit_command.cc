@@ -39,8 +39,8 @@ Fields FitCommandFields(FitCommandOptions* options) {
   fields.Add(Choice("progress", &options->collection.progress, kProgressStyles,
                     "with --out_dir: how progress is told, on standard error"));
 #ifdef PBNBRDF_HAS_RENDER
-  fields.AddCommon(Switch("report", &options->report,
-                          "with --out_dir: also make the page OUT_DIR/fits.html of all fits"));
+  fields.Add(Switch("report", &options->report,
+                    "with --out_dir: also make the page OUT_DIR/fits.html of all fits"));
 #endif
   fields.Add(FitFields(&options->request.setup.problem, &options->request.setup.options));
   return fields;
@@ -158,7 +158,7 @@ the fit after the iteration and keeps the best network so far.
 
 With --out_dir, --material is a pattern, or several separated by semicolons: 'merl/*.binary',
 'sgd:parameters.csv#*', 'builtin:*'. OUT_DIR gets NAME.safetensors and NAME.json of each material and
-a table of all, fits.csv and fits.json. Fits that it has are kept where material, problem and version
+a table of all, fits.csv and fits.json; with --report also a page, fits.html. Fits that it has are kept where material, problem and version
 are the same, so that a run that was ended goes on. A material that fails doesn't stop the others.
 )")}
       .With(FitCommandFields, RunFit);

@@ -35,7 +35,7 @@ using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device:
 template <typename T>
 using Result = nb::ndarray<nb::numpy, T>;
 
-constexpr std::size_t kChunk = 4096;     // pairs that one thread evaluates at a time
+constexpr std::size_t kChunk = 1024;     // pairs that one thread evaluates at a time, in its cache
 constexpr double kUnitTolerance = 1e-3;  // of the square of a direction's length
 
 // An array that owns its values.
@@ -71,15 +71,17 @@ template <typename T>
 Result<T> Evaluate(const Brdf& brdf, const Rows<T>& wi, const Rows<T>& wo) {
   CheckSizes(wi, wo.shape(0), "wo");
   const std::size_t count = wi.shape(0);
-  auto values = std::make_unique<T[]>(3 * count);
+  auto values = std::make_unique_for_overwrite<T[]>(3 * count);
   {
     const nb::gil_scoped_release release;
     const auto single = std::is_same_v<T, float> ? brdf.SinglePrecision() : nullptr;
     const Brdf& evaluated = single ? *single : brdf;
     ParallelFor((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
       const std::size_t first = chunk * kChunk, last = std::min(first + kChunk, count);
-      std::vector<DirectionPair> pairs(last - first);
-      std::vector<Rgb> rgb(last - first);
+      thread_local std::vector<DirectionPair> pairs;
+      thread_local std::vector<Rgb> rgb;
+      pairs.resize(last - first);
+      rgb.resize(last - first);
       for (std::size_t n = first; n < last; ++n) {
         pairs[n - first] = {DirectionAt(wi, n, "wi"), DirectionAt(wo, n, "wo")};
       }

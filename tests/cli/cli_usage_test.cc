@@ -6,9 +6,9 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr const char* kCommands[] = {"fit",     "measure",   "info", "eval", "export",
+constexpr const char* kCommands[] = {"fit",     "measure",  "info",      "eval", "export",
 #ifdef PBNBRDF_HAS_RENDER
-                                     "render",  "fit-scene",
+                                     "report",  "render",   "fit-scene",
 #endif
                                      "compare", "fit-model"};
 
@@ -109,10 +109,10 @@ TEST_F(Cli, OldNamesTellTheNewOnes) {
 
 TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError("", 2, "no command given: fit | measure");
-  ExpectError(
-      "fitt", 2,
-      "'fitt' is not a command: fit | measure | info | eval | export | render | fit-scene | "
-      "compare | fit-model; see pbnbrdf --help");
+  ExpectError("fitt", 2,
+              "'fitt' is not a command: fit | measure | info | eval | export | report | render | "
+              "fit-scene | "
+              "compare | fit-model; see pbnbrdf --help");
   ExpectError("fit", 2, "--material is required");
   ExpectError("fit --material=builtin:satin-gold", 2, "--out or --out_dir is required");
   ExpectError("info builtin: --all", 2, "--all is not a flag");
@@ -191,6 +191,32 @@ TEST_F(Cli, AStandardOutputThatCantBeWrittenIsAnError) {
 TEST_F(Cli, ASummaryOnStandardOutputIsJsonAlone) {
   const std::string fit = "fit --material=builtin:spectralon" + kQuick + "--summary=- --out=";
   EXPECT_TRUE(json::parse(Run(fit + Path("a.safetensors")).out).contains("mean_abs_log_error"));
+}
+
+TEST_F(Cli, TheManualAndWhatBashCompletesHaveEveryFlag) {
+  const std::string manual = Run("--manual").out, completion = Run("--completion").out;
+  EXPECT_THAT(manual, StartsWith(".TH PBNBRDF 1"));
+  for (const char* command : kCommands) {
+    std::string escaped = command;
+    if (const std::size_t hyphen = escaped.find('-'); hyphen != escaped.npos)
+      escaped.insert(hyphen, "\\");
+    EXPECT_THAT(manual, HasSubstr(StrCat("\n.SS ", escaped, "\n")));
+    EXPECT_THAT(completion, HasSubstr(StrCat("    ", command, ")\n")));
+    for (const std::string& line : FlagLines(Run(StrCat(command, " --help=all")).out)) {
+      const std::string flag = line.substr(2, line.find(' ', 2) - 2);
+      EXPECT_THAT(completion, HasSubstr(flag)) << command;
+    }
+  }
+  // No line that troff would take for a request of its own.
+  for (const std::string& line : Lines(manual)) {
+    if (!line.starts_with(".")) continue;
+    const std::string request = line.substr(0, line.find(' '));
+    EXPECT_THAT(
+        (std::vector<std::string>{".TH", ".SH", ".SS", ".PP", ".TP", ".nf", ".fi", ".B", ".I"}),
+        testing::Contains(request))
+        << line;
+  }
+  EXPECT_THAT(completion, HasSubstr("--activation) choices=\"tanh relu\""));
 }
 
 }  // namespace
