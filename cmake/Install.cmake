@@ -34,6 +34,7 @@ configure_package_config_file(cmake/pbnbrdf-config.cmake.in pbnbrdf-config.cmake
 write_basic_package_version_file(pbnbrdf-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pbnbrdf-config.cmake
               ${PROJECT_BINARY_DIR}/pbnbrdf-config-version.cmake DESTINATION ${package_dir})
+string(REGEX REPLACE "[^/]+" ".." up ${CMAKE_INSTALL_LIBDIR}/pkgconfig)  # from there to the prefix
 configure_file(cmake/pbnbrdf.pc.in pbnbrdf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/pbnbrdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

@@ -197,9 +197,7 @@ TEST_F(Cli, TheManualAndWhatBashCompletesHaveEveryFlag) {
   const std::string manual = Run("--manual").out, completion = Run("--completion").out;
   EXPECT_THAT(manual, StartsWith(".TH PBNBRDF 1"));
   for (const char* command : kCommands) {
-    std::string escaped = command;
-    if (const std::size_t hyphen = escaped.find('-'); hyphen != escaped.npos)
-      escaped.insert(hyphen, "\\");
+    const std::string escaped = Join(Split(command, '-'), "\\-");
     EXPECT_THAT(manual, HasSubstr(StrCat("\n.SS ", escaped, "\n")));
     EXPECT_THAT(completion, HasSubstr(StrCat("    ", command, ")\n")));
     for (const std::string& line : FlagLines(Run(StrCat(command, " --help=all")).out)) {
