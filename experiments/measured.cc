@@ -126,7 +126,7 @@ class Methods {
   std::vector<Candidate> Of(const MaterialSource& source, const Brdf& material) const {
     std::vector<Candidate> all;
     const std::string published = options_.networks + "/" + source.name + ".h5";
-    if (!options_.networks.empty() && std::filesystem::exists(published)) {
+    if (!options_.networks.empty() && IsMeasurement(source) && std::filesystem::exists(published)) {
       all.push_back({kPublished, [=] { return OpenBrdf(published); }});
     }
     if (options_.adam) all.push_back(Timed(kAdam, [&] { return Recipe(material); }));

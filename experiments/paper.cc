@@ -38,7 +38,7 @@ const std::string kUsage =
 
 The arguments are materials; without any, all MERL and RGL files in the folder --database and below it,
 built-in materials, and, with --sgd, 13 of the SGD model. The methods: the published network (NAME.h5 in
-a folder of --networks), NBRDF's recipe and then each of the paper's three steps, fitted by Adam
+a folder of --networks, of which the others are in Table 1), NBRDF's recipe and then each of the paper's three steps, fitted by Adam
 (reciprocal inputs, the energy term, the chromaticity term), and ours, the default of pbnbrdf fit.
 Fits are made by pbnbrdf fit --out_dir: those that are there are kept, and a run that was ended goes on.
 paper.csv has all numbers.
@@ -158,16 +158,18 @@ struct Candidate {
   std::string method, file;
 };
 
-std::vector<Candidate> CandidatesOf(const std::string& name, const Options& options,
+std::vector<Candidate> CandidatesOf(const MaterialSource& material, const Options& options,
                                     const Output& output) {
   std::vector<Candidate> all;
   const auto add = [&](const std::string& method, const std::string& file) {
     if (std::filesystem::exists(file)) all.push_back({method, file});
   };
-  for (const std::string& folder : options.networks)
-    add(kPublishedNetwork, folder + "/" + name + ".h5");
-  for (const Step& step : Steps())
-    add(step.method, FolderOf(step, output) + "/" + name + ".safetensors");
+  for (const std::string& folder : options.networks) {
+    if (IsMeasurement(material)) add(kPublishedNetwork, folder + "/" + material.name + ".h5");
+  }
+  for (const Step& step : Steps()) {
+    add(step.method, FolderOf(step, output) + "/" + material.name + ".safetensors");
+  }
   return all;
 }
 
@@ -182,19 +184,15 @@ class Study {
   void Add(const MaterialSource& source) {
     const std::unique_ptr<Brdf> material = OpenBrdf(source.source);
     const auto heldout = HeldOutSamples(*material, kHeldOut, kMeasureSeed);
-    PaperRecord itself;
-    itself.material = source.name;
-    itself.method = kItself;
+    PaperRecord itself = WithoutPicture(source.name, kItself);
     itself.reciprocity = MeasureReciprocity(*material);
     itself.energy = MeasureEnergy(*material, {.last_angle = kLastMaterialAngle});
     const double albedo = itself.energy.max_directional_albedo;
     itself.low_dissipation = albedo >= kLowDissipation && albedo <= 1.0;
-    itself.picture.mae = itself.picture.mse = itself.picture.psnr = itself.picture.ssim =
-        itself.picture.flip = std::numeric_limits<double>::quiet_NaN();
     records_.push_back(itself);
     const Studio studio(sphere_, *material, options_.samples_per_pixel, options_.threads);
     const Image reference = studio.Photograph([&] { return OpenBrdf(source.source); });
-    for (const Candidate& candidate : CandidatesOf(source.name, options_, output_)) {
+    for (const Candidate& candidate : CandidatesOf(source, options_, output_)) {
       const std::unique_ptr<Brdf> fit = OpenBrdf(candidate.file);
       PaperRecord record = itself;
       record.method = candidate.method;
@@ -205,8 +203,27 @@ class Study {
           CompareImages(reference, studio.Photograph([&] { return OpenBrdf(candidate.file); }));
       records_.push_back(record);
     }
-    sources_[source.name] = source.source;
+    sources_[source.name] = source;
     std::fprintf(stderr, "%s measured\n", source.name.c_str());
+  }
+
+  // Published networks of materials that aren't among those that were added: what can be said of them alone.
+  void AddOtherNetworks() {
+    for (const std::string& folder : options_.networks) {
+      for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().stem();
+        const auto known = sources_.find(name);
+        if (entry.path().extension() != ".h5" ||
+            (known != sources_.end() && IsMeasurement(known->second))) {
+          continue;
+        }
+        const std::unique_ptr<Brdf> network = OpenBrdf(entry.path());
+        PaperRecord record = WithoutPicture(name, "published network, without its material");
+        record.reciprocity = MeasureReciprocity(*network);
+        record.energy = MeasureEnergy(*network);
+        records_.push_back(record);
+      }
+    }
   }
 
   void Write() const {
@@ -217,6 +234,15 @@ class Study {
   }
 
  private:
+  static PaperRecord WithoutPicture(const std::string& material, const std::string& method) {
+    PaperRecord record;
+    record.material = material;
+    record.method = method;
+    record.log_error = record.picture.mae = record.picture.mse = record.picture.psnr =
+        record.picture.ssim = record.picture.flip = std::numeric_limits<double>::quiet_NaN();
+    return record;
+  }
+
   Scene OneMaterialScene(const std::string& path, const std::string& environment) const {
     Scene scene = ReadSmallScene(path, environment, options_.film_width);
     if (scene.materials.size() != 1) Fail(path, ": must have one material");
@@ -225,7 +251,7 @@ class Study {
 
   // The file of a method's network, "" if there is none.
   std::string FileOf(const std::string& material, const std::string& method) const {
-    for (const Candidate& candidate : CandidatesOf(material, options_, output_)) {
+    for (const Candidate& candidate : CandidatesOf(sources_.at(material), options_, output_)) {
       if (candidate.method == method) return candidate.file;
     }
     return "";
@@ -268,7 +294,7 @@ class Study {
       }
     }
     if (material.empty()) return "";
-    const std::string source = sources_.at(material);
+    const std::string source = sources_.at(material).source;
     PictureGrid grid(3);
     for (const bool close : {false, true}) {
       const Scene scene = SphereUnderOneLight(worst.theta_d, close);
@@ -326,7 +352,7 @@ class Study {
   }
 
   void AddRow(const std::string& material, PictureGrid* grid) const {
-    const std::string source = sources_.at(material);
+    const std::string source = sources_.at(material).source;
     const Studio studio(sphere_, *OpenBrdf(source), options_.samples_per_pixel, options_.threads);
     const Image reference = studio.Photograph([&] { return OpenBrdf(source); });
     const double exposure = DisplayExposure(reference);
@@ -358,7 +384,7 @@ class Study {
     ranked.resize(std::min(ranked.size(), kRowsOfFigure));
     PictureGrid grid(3);
     for (const auto& [albedo, material] : ranked) {
-      const std::string source = sources_.at(material);
+      const std::string source = sources_.at(material).source;
       const Studio studio(cove_, *OpenBrdf(source), options_.samples_per_pixel, options_.threads);
       const Image reference = studio.Photograph([&] { return OpenBrdf(source); });
       const double exposure = DisplayExposure(reference);
@@ -382,7 +408,7 @@ class Study {
   const Output& output_;
   const Scene sphere_, cove_;
   std::vector<PaperRecord> records_;
-  std::map<std::string, std::string> sources_;  // of the materials
+  std::map<std::string, MaterialSource> sources_;  // by name
 };
 
 void Run(const Options& options, const Arguments& arguments, const Output& output) {
@@ -391,6 +417,7 @@ void Run(const Options& options, const Arguments& arguments, const Output& outpu
   Study study(options, output);
   FitAll(materials, options, output);
   for (const MaterialSource& material : materials) study.Add(material);
+  study.AddOtherNetworks();
   study.Write();
 }
 

@@ -116,7 +116,7 @@ void AddMaterial(const Scene& scene, const MaterialSource& source, const Options
     std::fprintf(stderr, "%s, %s: %.3g s\n", source.name.c_str(), method, fit.seconds);
   };
   const std::string published = options.networks + "/" + source.name + ".h5";
-  if (!options.networks.empty() && std::filesystem::exists(published)) {
+  if (!options.networks.empty() && IsMeasurement(source) && std::filesystem::exists(published)) {
     add("published network", {OpenNetwork(published), std::numeric_limits<double>::quiet_NaN()});
   } else {
     add("published recipe", FitPublished(*material, options));

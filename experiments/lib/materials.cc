@@ -87,6 +87,10 @@ MaterialSource ParseMaterial(const std::string& text) {
   return material;
 }
 
+bool IsMeasurement(const MaterialSource& material) {
+  return !material.source.starts_with("sgd:") && !material.source.starts_with("builtin:");
+}
+
 std::vector<MaterialSource> ParseMaterials(const std::vector<std::string>& arguments,
                                            const std::vector<std::string>& defaults,
                                            const std::string& sgd) {

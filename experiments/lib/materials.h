@@ -15,6 +15,10 @@ struct MaterialSource {
 
 MaterialSource ParseMaterial(const std::string& text);
 
+// Whether it is neither a built-in material nor one of the SGD model: these go by names of measured materials, whose
+// published networks aren't theirs.
+bool IsMeasurement(const MaterialSource& material);
+
 // The materials that a program's arguments name or, if there are none, the defaults; the argument
 // "default" stands for all of these. sgd: a CSV of SGD parameters, which "sgd:NAME" stands for a material
 // of, or "". Opens each, so that a mistake shows before the first fit. Throws Error, also if two have the

@@ -79,8 +79,7 @@ std::string Cell(const std::map<std::string, double>& of_materials, const Column
   if (values.empty()) return "-";
   const double worst = column.larger_is_better ? *std::min_element(values.begin(), values.end())
                                                : *std::max_element(values.begin(), values.end());
-  return StrCat(Significant(Median(values), column.digits), " (", Significant(worst, column.digits),
-                ")");
+  return StrCat(Text(Median(values), column.digits), " (", Text(worst, column.digits), ")");
 }
 
 // Ours beside another method's, of one column, over the materials that both have.
@@ -115,6 +114,7 @@ std::string ComparisonsOf(const std::vector<Column>& columns, const std::vector<
   std::string losses;
   for (const std::string& method : methods) {
     if (method == kOurs || method == kItself) continue;
+    if (Duel(columns[0], values[0], method).ours.empty()) continue;
     std::vector<std::string> row = {method};
     std::map<std::string, std::vector<std::string>> worse;  // columns, by material
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -136,6 +136,15 @@ std::string ComparisonsOf(const std::vector<Column>& columns, const std::vector<
          (losses.empty() ? "" : "\nWhere ours isn't the best of two:\n\n" + losses);
 }
 
+bool HasValues(const std::vector<Values>& columns, const std::string& method) {
+  return std::any_of(columns.begin(), columns.end(), [&](const Values& values) {
+    const auto found = values.find(method);
+    return found != values.end() &&
+           std::any_of(found->second.begin(), found->second.end(),
+                       [](const auto& of_material) { return !std::isnan(of_material.second); });
+  });
+}
+
 std::string MarkdownOf(const PaperTable& table, const std::vector<PaperRecord>& records) {
   std::vector<std::string> methods, heads = {"method", "materials"};
   std::vector<Values> values(table.columns.size());
@@ -147,6 +156,7 @@ std::string MarkdownOf(const PaperTable& table, const std::vector<PaperRecord>& 
       values[k][record.method][record.material] = table.columns[k].value(record);
     }
   }
+  std::erase_if(methods, [&](const std::string& method) { return !HasValues(values, method); });
   if (methods.empty()) return "";
   for (const Column& column : table.columns) heads.push_back(column.name);
   Table rows(heads);
