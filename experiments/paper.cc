@@ -251,7 +251,9 @@ class Study {
 
   // The file of a method's network, "" if there is none.
   std::string FileOf(const std::string& material, const std::string& method) const {
-    for (const Candidate& candidate : CandidatesOf(sources_.at(material), options_, output_)) {
+    const auto source = sources_.find(material);
+    if (source == sources_.end()) return "";
+    for (const Candidate& candidate : CandidatesOf(source->second, options_, output_)) {
       if (candidate.method == method) return candidate.file;
     }
     return "";

@@ -133,6 +133,18 @@ TEST(Paper, RegeneratesTheTablesAndGoesOnWhereItWas) {
   EXPECT_EQ(std::filesystem::last_write_time(folder / "results/fits/ours/spectralon.safetensors"),
             before);
   EXPECT_EQ(Read(folder / "results/fits/ours/spectralon.safetensors"), kept);
+  // A published network whose material isn't there.
+  std::filesystem::create_directory(folder / "networks");
+  ASSERT_EQ(RunProgram({PBNBRDF_EXPERIMENTS "/pbnbrdf", "export",
+                        "--fit=" + (folder / "results/fits/nbrdf/spectralon.safetensors"),
+                        "--format=h5", "--out=" + (folder / "networks/spectralon.h5")})
+                .status,
+            0);
+  std::vector<std::string> with_networks = flags;
+  with_networks.push_back("--networks=" + (folder / "networks"));
+  const ProgramResult more = RunIn(folder, "paper", with_networks);
+  EXPECT_EQ(more.status, 0);
+  EXPECT_THAT(more.output, HasSubstr("| published network, without its material "));
 }
 
 // Measured towards many directions from each of five angles.
