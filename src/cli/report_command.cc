@@ -53,10 +53,10 @@ Command ReportCommand() {
   pbnbrdf report --fits=fits --out=fits.html
 )",
       .notes = StrCat(
-          R"(The page is one file that needs nothing else: pictures of material and fit with a divider, their
-difference (FLIP), a sphere to light and turn, slices of the BRDF with what was measured, directional
-albedo, error against time, all measures, and the command that repeats the fit; of several fits a
-table, too. All that it shows is in it as JSON, in the element of id report-data.
+          R"(The page is one file that needs nothing else: pictures of material and fit with a divider, and their
+difference (FLIP); a sphere to light and to turn; slices of the BRDF, with what was measured;
+directional albedo; error against time; all measures; the command that repeats the fit; of several
+fits a table, too. All that it shows is in it as JSON, in the element of id report-data.
 
 )",
           kSourceNotes)}
