@@ -38,10 +38,10 @@ const std::string kUsage =
 
 The arguments are materials; without any, all MERL and RGL files in the folder --database and below it,
 built-in materials, and, with --sgd, 13 of the SGD model. The methods: the published network (NAME.h5 in
-a folder of --networks, of which the others are in Table 1), NBRDF's recipe and then each of the paper's three steps, fitted by Adam
-(reciprocal inputs, the energy term, the chromaticity term), and ours, the default of pbnbrdf fit.
-Fits are made by pbnbrdf fit --out_dir: those that are there are kept, and a run that was ended goes on.
-paper.csv has all numbers.
+a folder of --networks; others that are there stand in Table 1), NBRDF's recipe and then each of the
+paper's three steps, fitted by Adam (reciprocal inputs, the energy term, the chromaticity term), and
+ours, the default of pbnbrdf fit. Fits are made by pbnbrdf fit --out_dir: those that are there are kept,
+and a run that was ended goes on. paper.csv has all numbers.
 )" + std::string(kMaterialsHelp);
 
 struct Step {
