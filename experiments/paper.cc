@@ -218,7 +218,8 @@ class Study {
           continue;
         }
         const std::unique_ptr<Brdf> network = OpenBrdf(entry.path());
-        PaperRecord record = WithoutPicture(name, "published network, without its material");
+        PaperRecord record =
+            WithoutPicture(name + " (network)", "published network, without its material");
         record.reciprocity = MeasureReciprocity(*network);
         record.energy = MeasureEnergy(*network);
         records_.push_back(record);
