@@ -268,12 +268,9 @@ class Study {
     return {};
   }
 
-  std::vector<PaperRecord> Of(const std::string& method) const {
-    std::vector<PaperRecord> records;
-    for (const PaperRecord& record : records_) {
-      if (record.method == method) records.push_back(record);
-    }
-    return records;
+  // What pictures show beside the material.
+  std::vector<Candidate> RivalsOf(const std::string& material) const {
+    return {BaselineOf(material), {kOurs, FileOf(material, kOurs)}};
   }
 
   static std::string Said(const std::string& figure, const std::string& why) {
@@ -362,7 +359,7 @@ class Study {
     const Image shown = Exposed(reference, exposure);
     grid->Add(material, shown);
     std::vector<std::pair<std::string, Image>> maps;
-    for (const Candidate& fit : {BaselineOf(material), Candidate{kOurs, FileOf(material, kOurs)}}) {
+    for (const Candidate& fit : RivalsOf(material)) {
       const Image image = studio.Photograph([&] { return OpenBrdf(fit.file); });
       grid->Add(
           StrCat(fit.method, ", ", Significant(CompareImages(reference, image).psnr, 3), " dB"),
@@ -392,8 +389,7 @@ class Study {
       const Image reference = studio.Photograph([&] { return OpenBrdf(source); });
       const double exposure = DisplayExposure(reference);
       grid.Add(material, Exposed(reference, exposure));
-      for (const Candidate& fit :
-           {BaselineOf(material), Candidate{kOurs, FileOf(material, kOurs)}}) {
+      for (const Candidate& fit : RivalsOf(material)) {
         const Image image = studio.Photograph([&] { return OpenBrdf(fit.file); });
         const double largest = MeasureEnergy(*OpenBrdf(fit.file)).max_directional_albedo;
         grid.Add(StrCat(fit.method, ", albedo ", Significant(largest, 4), ", ",

@@ -157,9 +157,10 @@ The network's file and the summary record the flags that repeat the fit, bit for
 the fit after the iteration and keeps the best network so far.
 
 With --out_dir, --material is a pattern, or several separated by semicolons: 'merl/*.binary',
-'sgd:parameters.csv#*', 'builtin:*'. OUT_DIR gets NAME.safetensors and NAME.json of each material and
-a table of all, fits.csv and fits.json; with --report also a page, fits.html. Fits that it has are kept where material, problem and version
-are the same, so that a run that was ended goes on. A material that fails doesn't stop the others.
+'sgd:parameters.csv#*', 'builtin:*'. OUT_DIR gets NAME.safetensors and NAME.json of each material, a
+table of all, fits.csv and fits.json, and with --report a page, fits.html. Fits that it has are kept
+where material, problem and version are the same, so that a run that was ended goes on. A material
+that fails doesn't stop the others.
 )")}
       .With(FitCommandFields, RunFit);
 }

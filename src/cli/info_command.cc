@@ -5,8 +5,8 @@
 #include <map>
 
 #include "command_line.h"
-#include "fit_record.h"
 #include "material_options.h"
+#include "measure/measures.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/metrics/coverage.h"
 #include "pbnbrdf/models/analytic.h"

@@ -4,8 +4,8 @@
 
 #include "base/about.h"
 #include "command_line.h"
-#include "fit_record.h"
 #include "material_options.h"
+#include "measure/measures.h"
 #include "opened_fit.h"
 
 namespace pbnbrdf::cli {

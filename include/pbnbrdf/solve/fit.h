@@ -108,8 +108,7 @@ struct EnergySummary {
 struct FitMoment {
   int iteration = 0;
   double seconds = 0.0;  // as FitSummary::seconds
-  double error =
-      0.0;  // mean |eq. 6| over samples that no solver sees, drawn as those of the fit are
+  double error = 0.0;  // mean |eq. 6| over samples drawn as those of the fit, which no solver sees
 };
 
 struct FitSummary {
