@@ -13,6 +13,7 @@
 #include "discontinuity.h"
 #include "experiment.h"
 #include "materials.h"
+#include "measure/shown_lpips.h"
 #include "option_fields.h"
 #include "paper_tables.h"
 #include "pbnbrdf/base/error.h"
@@ -83,7 +84,7 @@ constexpr std::size_t kRowsOfFigure = 3;
 
 struct Options {
   std::string database, sgd, scene = "problems/scenes/sphere.json",
-                             cove = "problems/scenes/cove.json", environment;
+                             cove = "problems/scenes/cove.json", environment, lpips;
   std::vector<std::string> networks;
   int film_width = 256, samples_per_pixel = 64, threads = 0, jobs = 0;
   std::optional<int> max_iterations;
@@ -98,6 +99,8 @@ Fields FieldsOf(Options* o) {
   fields.Add(Text("cove", &o->cove, "concave scene file, of one material, for figure 3"));
   fields.Add(Text("environment", &o->environment,
                   "OpenEXR file that takes the place of the scene's environment light"));
+  fields.Add(
+      Text("lpips", &o->lpips, "weights of LPIPS ('pbnbrdf compare --help'): a column of Table 3"));
   fields.Add(Integer("film_width", &o->film_width, AtLeast(16), "pixels of each picture"));
   fields.Add(Integer("samples_per_pixel", &o->samples_per_pixel, AtLeast(1), "of each picture"));
   fields.Add(OverridingInteger("max_iterations", &o->max_iterations, AtLeast(0),
@@ -179,7 +182,9 @@ class Study {
       : options_(options),
         output_(output),
         sphere_(OneMaterialScene(options.scene, options.environment)),
-        cove_(OneMaterialScene(options.cove, "")) {}
+        cove_(OneMaterialScene(options.cove, "")) {
+    if (!options.lpips.empty()) lpips_.emplace(options.lpips);
+  }
 
   void Add(const MaterialSource& source) {
     const std::unique_ptr<Brdf> material = OpenBrdf(source.source);
@@ -199,8 +204,9 @@ class Study {
       record.log_error = MeasureErrors(heldout, *fit).mean_abs_log_error;
       record.reciprocity = MeasureReciprocity(*fit);
       record.energy = MeasureEnergy(*fit);
-      record.picture =
-          CompareImages(reference, studio.Photograph([&] { return OpenBrdf(candidate.file); }));
+      const Image picture = studio.Photograph([&] { return OpenBrdf(candidate.file); });
+      record.picture = CompareImages(reference, picture);
+      if (lpips_) record.lpips = lpips_->Of(reference, picture, record.picture.exposure);
       records_.push_back(record);
     }
     sources_[source.name] = source;
@@ -406,6 +412,7 @@ class Study {
   const Options& options_;
   const Output& output_;
   const Scene sphere_, cove_;
+  std::optional<ShownLpips> lpips_;
   std::vector<PaperRecord> records_;
   std::map<std::string, MaterialSource> sources_;  // by name
 };

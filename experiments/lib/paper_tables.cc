@@ -36,6 +36,7 @@ double Albedo(const PaperRecord& r) { return r.energy.max_directional_albedo; }
 std::vector<PaperTable> Tables() {
   const Column mae = {"MAE x 1000", [](const PaperRecord& r) { return 1e3 * r.picture.mae; }};
   const Column mse = {"MSE x 1000", [](const PaperRecord& r) { return 1e3 * r.picture.mse; }};
+  const Column lpips = {"LPIPS x 1000", [](const PaperRecord& r) { return 1e3 * r.lpips; }};
   const Column psnr = {"PSNR, dB", [](const PaperRecord& r) { return r.picture.psnr; }, true};
   const Column ssim = {"SSIM", [](const PaperRecord& r) { return r.picture.ssim; }, true, 5};
   const Column flip = {"FLIP", [](const PaperRecord& r) { return r.picture.flip; }};
@@ -53,7 +54,7 @@ std::vector<PaperTable> Tables() {
        "NBRDF MAE x 1000 6.42, PSNR 47.4, SSIM 0.978; PBNBRDF 6.10, 47.8, 0.978"},
       {"Table 3: colour",
        "Pictures of all materials.",
-       {mae, mse, psnr, ssim, flip, error},
+       {mae, mse, lpips, psnr, ssim, flip, error},
        false,
        "NBRDF MAE 0.805, MSE 2.45, LPIPS x 1000 9.11, PSNR 32.9, SSIM 0.988; PBNBRDF 0.586, 1.31, "
        "6.76, 36.8, "
@@ -145,7 +146,11 @@ bool HasValues(const std::vector<Values>& columns, const std::string& method) {
   });
 }
 
-std::string MarkdownOf(const PaperTable& table, const std::vector<PaperRecord>& records) {
+std::string MarkdownOf(PaperTable table, const std::vector<PaperRecord>& records) {
+  std::erase_if(table.columns, [&](const Column& column) {  // what nobody measured
+    return std::all_of(records.begin(), records.end(),
+                       [&](const PaperRecord& record) { return std::isnan(column.value(record)); });
+  });
   std::vector<std::string> methods, heads = {"method", "materials"};
   std::vector<Values> values(table.columns.size());
   std::map<std::string, std::size_t> counts;
@@ -188,13 +193,14 @@ std::string PaperMarkdown(const std::vector<PaperRecord>& records) {
 std::string PaperCsv(const std::vector<PaperRecord>& records) {
   std::string csv =
       "material,method,low_dissipation,log_error,hrl,hcl,eal,largest_albedo,mae,mse,psnr,ssim,"
-      "flip\n";
+      "flip,lpips\n";
   for (const PaperRecord& r : records) {
     csv += CsvLine({r.material, r.method, r.low_dissipation ? "1" : "0", FormatNumber(r.log_error),
                     FormatNumber(r.reciprocity.hrl), FormatNumber(r.reciprocity.hcl),
                     FormatNumber(Eal(r)), FormatNumber(Albedo(r)), FormatNumber(r.picture.mae),
                     FormatNumber(r.picture.mse), FormatNumber(r.picture.psnr),
-                    FormatNumber(r.picture.ssim), FormatNumber(r.picture.flip)});
+                    FormatNumber(r.picture.ssim), FormatNumber(r.picture.flip),
+                    FormatNumber(r.lpips)});
   }
   return csv;
 }

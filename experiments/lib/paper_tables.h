@@ -1,6 +1,7 @@
 // paper_tables.h: the paper's Tables 1 to 3 from what each method reaches on each material.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct PaperRecord {
   Reciprocity reciprocity;
   Energy energy;
   ImageErrors picture;  // against the material's own; not of kItself
+  double lpips =
+      std::numeric_limits<double>::quiet_NaN();  // of that picture, where it was measured
 };
 
 // A row for each method, in the order in which they first appear; of each column the median over materials and the

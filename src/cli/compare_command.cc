@@ -6,13 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/about.h"
 #include "base/text.h"
 #include "command_line.h"
-#include "network/safetensors.h"
+#include "measure/shown_lpips.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/metrics/image_metrics.h"
-#include "pbnbrdf/metrics/lpips.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -94,52 +92,6 @@ void PrintText(const Measured& measured) {
             << measured.region.top << ").\n";
 }
 
-// What the package calls the convolutions: AlexNet's, cut into slices.
-constexpr std::array<const char*, kLpipsLayers.size()> kConvolutions = {
-    "net.slice1.0", "net.slice2.3", "net.slice3.6", "net.slice4.8", "net.slice5.10"};
-
-// The tensor's values, which it loses.
-std::vector<double> Take(const std::string& path, const std::string& name,
-                         const std::vector<std::int64_t>& shape, SafetensorsFile* file) {
-  const auto found = file->tensors.find(name);
-  if (found == file->tensors.end()) {
-    Fail(
-        path, ": no tensor ", name, " (", ShapeText(shape),
-        "): not the weights of LPIPS with AlexNet; 'pbnbrdf compare --help' says how to make them");
-  }
-  if (found->second.shape != shape) {
-    Fail(path, ": tensor ", name, ": shape ", ShapeText(found->second.shape), ", expected ",
-         ShapeText(shape));
-  }
-  return std::move(found->second.values);
-}
-
-// Reads a safetensors file of F32 or F64 tensors named as in the state of the Python package lpips
-// (its LPIPS(net='alex')): net.slice1.0.weight, net.slice1.0.bias, ..., lin4.model.1.weight; others
-// are ignored. Throws Error as ReadSafetensors does, and if one is missing or of another shape.
-LpipsWeights ReadLpipsWeights(const std::string& path) {
-  SafetensorsFile file = ReadSafetensors(path);
-  LpipsWeights weights;
-  for (std::size_t k = 0; k < kLpipsLayers.size(); ++k) {
-    const LpipsLayerShape& shape = kLpipsLayers[k];
-    const std::string name = kConvolutions[k];
-    weights[k].kernels = Take(path, name + ".weight",
-                              {shape.units, shape.inputs, shape.kernel, shape.kernel}, &file);
-    weights[k].biases = Take(path, name + ".bias", {shape.units}, &file);
-    weights[k].head =
-        Take(path, StrCat("lin", k, ".model.1.weight"), {1, shape.units, 1, 1}, &file);
-  }
-  return weights;
-}
-
-// Of the shown images. Throws Error, which names the file of weights.
-double ShownLpips(const Image& reference, const Image& test, double exposure,
-                  const LpipsWeights& weights, const std::string& file) {
-  const Image shown_reference = DisplayImage(reference, exposure);
-  const Image shown_test = DisplayImage(test, exposure);
-  return About(file, [&] { return Lpips(shown_reference, shown_test, weights); });
-}
-
 // Where both files have pixels. Throws Error if that is nowhere, or if they place the image differently.
 PixelRegion CommonRegion(const StoredImage& reference, const StoredImage& test,
                          const std::string& reference_path, const std::string& test_path) {
@@ -159,8 +111,8 @@ PixelRegion CommonRegion(const StoredImage& reference, const StoredImage& test,
 // Measures the two images, and writes the map of errors if it is asked for.
 Measured Compare(const CompareOptions& options, const std::string& reference_path,
                  const std::string& test_path) {
-  std::optional<LpipsWeights> lpips;
-  if (!options.lpips.empty()) lpips = ReadLpipsWeights(options.lpips);
+  std::optional<ShownLpips> lpips;
+  if (!options.lpips.empty()) lpips.emplace(options.lpips);
   const StoredImage reference_file = OpenStoredImage(reference_path);
   const StoredImage test_file = OpenStoredImage(test_path);
   CheckComparable(reference_file.image, test_file.image, reference_path, test_path);
@@ -171,9 +123,7 @@ Measured Compare(const CompareOptions& options, const std::string& reference_pat
   CheckComparable(reference, test, reference_path, test_path);
   if (lpips) CheckLargeEnoughForLpips(reference, reference_path);
   Measured measured{CompareImages(reference, test), region, is_part, std::nullopt};
-  if (lpips) {
-    measured.lpips = ShownLpips(reference, test, measured.errors.exposure, *lpips, options.lpips);
-  }
+  if (lpips) measured.lpips = lpips->Of(reference, test, measured.errors.exposure);
   if (!options.error_map.empty()) {
     WriteExr(options.error_map, AbsoluteDifference(reference, test),
              {{"reference", reference_path},

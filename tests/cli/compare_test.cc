@@ -128,24 +128,6 @@ class CompareLpips : public Compare {
     WriteExr(Path("large_test.exr"), large_test_);
   }
 
-  // As the package lpips names them, with what isn't needed.
-  static SafetensorsFile File(const LpipsWeights& weights) {
-    const char* names[] = {"net.slice1.0", "net.slice2.3", "net.slice3.6", "net.slice4.8",
-                           "net.slice5.10"};
-    SafetensorsFile file;
-    file.tensors["scaling_layer.shift"] = {{1, 3, 1, 1}, {-0.03, -0.088, -0.188}};
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      const LpipsLayerShape& shape = kLpipsLayers[k];
-      const std::string name = names[k];
-      file.tensors[name + ".weight"] = {{shape.units, shape.inputs, shape.kernel, shape.kernel},
-                                        weights[k].kernels};
-      file.tensors[name + ".bias"] = {{shape.units}, weights[k].biases};
-      file.tensors[StrCat("lin", k, ".model.1.weight")] = {{1, shape.units, 1, 1}, weights[k].head};
-      file.tensors[StrCat("lins.", k, ".model.1.weight")] = {{1}, {0.0}};
-    }
-    return file;
-  }
-
   void ExpectLpipsError(const std::string& file, const std::string& message) const {
     ExpectError(large_ + " --lpips=" + Path(file), 1, Path(file) + ": " + message);
   }
@@ -157,7 +139,7 @@ class CompareLpips : public Compare {
 };
 
 TEST_F(CompareLpips, IsThatOfTheShownImages) {
-  WriteFile(Path("alex.safetensors"), SafetensorsBytes(File(weights_)));
+  WriteFile(Path("alex.safetensors"), SafetensorsBytes(LpipsFile(weights_)));
   const std::string command = large_ + " --lpips=" + Path("alex.safetensors");
   const Result result = Run(command + " --json"), without = Run(large_ + " --json");
   ASSERT_EQ(result.status, 0) << result.err;
@@ -175,7 +157,7 @@ TEST_F(CompareLpips, IsThatOfTheShownImages) {
 TEST_F(CompareLpips, Misuse) {
   ExpectError(large_ + " --lpips", 2, "--lpips needs a value");
   ExpectError(large_ + " --lpips=", 2, "--lpips= needs a file");
-  WriteFile(Path("alex.safetensors"), SafetensorsBytes(File(weights_)));
+  WriteFile(Path("alex.safetensors"), SafetensorsBytes(LpipsFile(weights_)));
   ExpectError(Command("reference.exr", "test.exr") + " --lpips=" + Path("alex.safetensors"), 1,
               "reference.exr: 30 x 20 pixels; LPIPS needs at least 31 x 31");
 }
@@ -184,37 +166,37 @@ TEST_F(CompareLpips, UnusableFiles) {
   ExpectLpipsError("none.safetensors", "no such file");
   ExpectLpipsError("test.exr", "not a safetensors file");
 
-  SafetensorsFile file = File(weights_);
+  SafetensorsFile file = LpipsFile(weights_);
   const std::string bytes = SafetensorsBytes(file);
   WriteBytes(Path("cut.safetensors"), bytes.substr(0, bytes.size() / 2));
   ExpectLpipsError("cut.safetensors", "tensor ");
   WriteBytes(Path("header.safetensors"), bytes.substr(0, 100));
   ExpectLpipsError("header.safetensors", "not a safetensors file");
 
-  for (const auto& [name, tensor] : File(weights_).tensors) {
+  for (const auto& [name, tensor] : LpipsFile(weights_).tensors) {
     if (name.starts_with("lins.") || name.starts_with("scaling_layer")) continue;
-    file = File(weights_);
+    file = LpipsFile(weights_);
     file.tensors.erase(name);
     WriteFile(Path("less.safetensors"), SafetensorsBytes(file));
     ExpectLpipsError("less.safetensors", StrCat("no tensor ", name, " (", ShapeText(tensor.shape)));
   }
 
-  file = File(weights_);
+  file = LpipsFile(weights_);
   file.tensors["net.slice3.6.weight"].shape = {192, 384, 3, 3};
   WriteFile(Path("turned.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError(
       "turned.safetensors",
       "tensor net.slice3.6.weight: shape 192 x 384 x 3 x 3, expected 384 x 192 x 3 x 3");
-  file = File(weights_);
+  file = LpipsFile(weights_);
   file.tensors["lin4.model.1.weight"].shape = {256};
   WriteFile(Path("flat.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError("flat.safetensors",
                    "tensor lin4.model.1.weight: shape 256, expected 1 x 256 x 1 x 1");
-  file = File(weights_);
+  file = LpipsFile(weights_);
   file.tensors["net.slice1.0.bias"].values[3] = std::nan("");
   WriteFile(Path("nan.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError("nan.safetensors", "tensor net.slice1.0.bias: holds a value that is not finite");
-  file = File(weights_);
+  file = LpipsFile(weights_);
   for (double& weight : file.tensors["net.slice2.3.weight"].values) weight *= 1e300;
   WriteFile(Path("huge.safetensors"), SafetensorsBytes(file));
   ExpectLpipsError("huge.safetensors", "LPIPS isn't finite: ");

@@ -46,6 +46,13 @@ TEST(PaperMarkdown, HasTheMaterialsThatReflectNearlyAllLightInTable2) {
   EXPECT_THAT(table2, HasSubstr("| ours   |         1 |"));
 }
 
+TEST(PaperMarkdown, LeavesOutAColumnThatNobodyMeasured) {
+  PaperRecord record = Record("a", kOurs, 30.0);
+  EXPECT_THAT(PaperMarkdown({record}), Not(HasSubstr("| LPIPS x 1000 ")));
+  record.lpips = 0.25;
+  EXPECT_THAT(PaperMarkdown({record, Record("b", kOurs, 30.0)}), HasSubstr("| LPIPS x 1000 "));
+}
+
 TEST(PaperCsv, HasARowForEachRecord) {
   const std::string csv = PaperCsv({Record("a", kOurs, 30.0)});
   EXPECT_THAT(csv, HasSubstr("\na,ours,0,"));

@@ -5,6 +5,8 @@
 
 #include "base/text.h"
 #include "experiments/run_experiment.h"
+#include "metrics/lpips_weights.h"
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/png.h"
 #include "picture_grid.h"
 
@@ -114,8 +116,8 @@ TEST(Paper, RegeneratesTheTablesAndGoesOnWhereItWas) {
   const TemporaryFolder folder;
   const std::vector<std::string> flags = {"--scene=" PBNBRDF_SCENES "/sphere.json",
                                           "--cove=" PBNBRDF_SCENES "/cove.json",
-                                          "--film_width=16",
-                                          "--samples_per_pixel=2",
+                                          "--film_width=32",
+                                          "--samples_per_pixel=1",
                                           "--max_iterations=20",
                                           "--samples=600",
                                           "builtin:spectralon"};
@@ -125,7 +127,8 @@ TEST(Paper, RegeneratesTheTablesAndGoesOnWhereItWas) {
                            "| ours ", "paper_figure2.png", "paper_figure3.png"}) {
     EXPECT_THAT(run.output, HasSubstr(text));
   }
-  EXPECT_EQ(ReadPng(folder / "results/paper_figure2.png").width > 16, true);
+  EXPECT_THAT(run.output, Not(HasSubstr("| LPIPS")));
+  EXPECT_GT(ReadPng(folder / "results/paper_figure2.png").width, 32);
   const std::string kept = Read(folder / "results/fits/ours/spectralon.safetensors");
   const auto before =
       std::filesystem::last_write_time(folder / "results/fits/ours/spectralon.safetensors");
@@ -142,9 +145,12 @@ TEST(Paper, RegeneratesTheTablesAndGoesOnWhereItWas) {
             0);
   std::vector<std::string> with_networks = flags;
   with_networks.push_back("--networks=" + (folder / "networks"));
+  WriteFile(folder / "alex.safetensors", SafetensorsBytes(LpipsFile(RandomLpipsWeights(1))));
+  with_networks.push_back("--lpips=" + (folder / "alex.safetensors"));
   const ProgramResult more = RunIn(folder, "paper", with_networks);
   EXPECT_EQ(more.status, 0);
   EXPECT_THAT(more.output, HasSubstr("| published network, without its material "));
+  EXPECT_THAT(more.output, HasSubstr("| LPIPS"));
 }
 
 // Measured towards many directions from each of five angles.
