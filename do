@@ -1,5 +1,5 @@
 #!/bin/sh
-# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize | wheel | deb | deb-test.
+# What there is to do here: ./do demo | test | peers | build | bench | experiments NAME | sanitize | fuzz [SECONDS] | wheel | docs | deb | deb-test.
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
@@ -132,6 +132,31 @@ deb_test() {
   as_root chroot "$root" test ! -e /usr/bin/pbnbrdf
 }
 
+# fuzz [SECONDS]: each format of files, and fits, for so long under the same sanitizers.
+fuzz() {
+  packages="$packages clang-14 libclang-rt-14-dev llvm-14"
+  configure build-fuzz -DPBNBRDF_FUZZ=ON -DPBNBRDF_BENCHMARKS=OFF -DPBNBRDF_TESTS=OFF \
+    -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
+  cmake --build build-fuzz --parallel "$(nproc)" --target fuzz_targets
+  sh tests/fuzz/run.sh build-fuzz "${1:-10}" "$(nproc)"
+}
+
+# The site of documentation in build/docs; every warning is an error.
+docs() {
+  packages="doxygen furo python3-myst-parser python3-sphinx"
+  install_packages
+  rm -rf "$build/docs"
+  mkdir -p "$build/docs"
+  sphinx-build -q -W --keep-going -b html docs "$build/docs"
+  doxygen docs/Doxyfile
+  # What a page shows comes from the site itself.
+  if grep -rnE '<(script|link|img)[^>]*(src|href)="https?:' "$build/docs" --include='*.html'; then
+    echo "the pages above ask another host for something" >&2
+    exit 1
+  fi
+  echo "open $build/docs/index.html"
+}
+
 # The Python package as a wheel in build/wheel, and its tests in an environment that has nothing else.
 wheel() {
   packages="$packages python3-dev python3-venv"
@@ -176,11 +201,13 @@ case ${1:-} in
   bench) build microbenchmarks && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
+  fuzz) fuzz "${2:-}" ;;
+  docs) docs ;;
   wheel) wheel ;;
   deb) deb ;;
   deb-test) deb_test ;;
   *)
-    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize | wheel | deb | deb-test" >&2
+    echo "usage: ./do demo | test | peers | build | bench | experiments NAME | sanitize | fuzz [SECONDS] | wheel | docs | deb | deb-test" >&2
     exit 2
     ;;
 esac

@@ -1,9 +1,11 @@
 # Warnings and sanitizers are a target; -Werror is for CI.
 add_library(pbnbrdf_warnings INTERFACE)
-target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-restrict
+target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
-if(PBNBRDF_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+if(PBNBRDF_SANITIZE OR PBNBRDF_FUZZ)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+                      $<$<BOOL:${PBNBRDF_FUZZ}>:-fsanitize=fuzzer-no-link>)
   add_link_options(-fsanitize=address,undefined)
   # Eigen allocates otherwise under the address sanitizer, and libceres frees what headers allocated.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)

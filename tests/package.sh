@@ -22,8 +22,8 @@ c++ -o "$build/by_pkg_config" "$2/examples/library/fit_gold.cc" \
 gzip -cd "$prefix/share/man/man1/pbnbrdf.1.gz" | grep -q '^\.SS fit$'
 bash -c 'source "$1"; COMP_WORDS=(pbnbrdf exp); COMP_CWORD=1; _pbnbrdf; [ "${COMPREPLY[*]}" = export ]' - \
   "$prefix/share/bash-completion/completions/pbnbrdf"
-# The README shows this very program.
-awk '/^```cpp/ {inside = 1; next} /^```/ {inside = 0} inside' "$2/README.md" > "$build/readme.cc"
+# docs/library.md shows this very program.
+awk '/^```cpp/ {inside = 1; next} /^```/ {inside = 0} inside' "$2/docs/library.md" > "$build/readme.cc"
 diff "$build/readme.cc" "$2/examples/library/fit_gold.cc"
 # Every public header stands alone, but the expressions that others include in their own namespaces.
 for header in $(cd "$prefix/include" && find pbnbrdf -name '*.h' ! -name '*-inl.h' | sort); do

@@ -79,12 +79,7 @@ void SilenceLog(const char* program) {
   }
 }
 
-// One line, whatever names and texts are quoted in it.
-void PrintError(std::string message) {
-  std::replace_if(
-      message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-  std::fprintf(stderr, "pbnbrdf: %s\n", message.c_str());
-}
+void PrintError(const char* message) { std::fprintf(stderr, "pbnbrdf: %s\n", message); }
 
 }  // namespace
 }  // namespace pbnbrdf::cli

@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "image/exr_errors.h"
+#include "image/image_size.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/image/exr.h"
 
@@ -61,15 +62,6 @@ Channels ColorChannels(const std::string& path, const Imf::Header& header) {
     }
   }
   return names;
-}
-
-void CheckSize(const std::string& path, const Imath::Box2i& window) {
-  const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
-  const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
-  if (width < 1 || height < 1) Fail(path, ": an image of ", width, " x ", height, " pixels");
-  if (static_cast<std::size_t>(width * height) > kMaxPixels) {
-    Fail(path, ": ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read");
-  }
 }
 
 // The first part that is an image with colours; where there is none, the first.
@@ -162,7 +154,10 @@ StoredImage ReadPart(const std::string& path, Imf::MultiPartInputFile& file, int
   const Imf::Header& header = file.header(index);
   const Channels channels = ColorChannels(path, header);
   const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
-  for (const Imath::Box2i& window : {data, display}) CheckSize(path, window);
+  for (const Imath::Box2i& window : {data, display}) {
+    CheckImageSize(path, std::int64_t(window.max.x) - window.min.x + 1,
+                   std::int64_t(window.max.y) - window.min.y + 1, FileSize(path));
+  }
   if (!file.partComplete(index)) Fail(path, ": truncated: pixels are missing");
   Imf::InputPart part(file, index);
   Image image = ReadWindow(part, channels, data);

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <vector>
 
+#include "image/image_size.h"
 #include "image/srgb.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
@@ -125,9 +126,7 @@ Image ReadPng(const std::string& path) {
   if (!ReadHeader(reader)) Fail(path, ": truncated or damaged PNG file: ", reader.message);
   const std::size_t width = png_get_image_width(reader.png, reader.info);
   const std::size_t height = png_get_image_height(reader.png, reader.info);
-  if (width * height > kMaxPixels) {
-    Fail(path, ": ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read");
-  }
+  CheckImageSize(path, std::int64_t(width), std::int64_t(height), FileSize(path));
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   std::vector<png_byte> bytes(row_bytes * height);
   std::vector<png_bytep> rows(height);

@@ -160,8 +160,8 @@ AnalyticBrdf AnalyticBrdf::FromValues(const std::string& name, const Values& val
   const auto places = PlacesByName(all);
   std::set<std::string> given;
   for (const auto& [key, numbers] : values) {
-    const auto found = std::find_if(places.begin(), places.end(),
-                                    [&](const auto& place) { return place.first == key; });
+    const auto found = std::ranges::find(
+        places, key, [](const auto& place) -> const auto& { return place.first; });
     if (found == places.end()) {
       std::vector<std::string> known;
       for (const auto& [known_name, placed] : places) known.push_back(known_name);

@@ -131,21 +131,23 @@ void BatchPass<T>::AddGradient(const T* weights, const T* input, std::size_t b, 
 template <typename T>
 void BatchPass<T>::AddCurve(const WeightsAlong& weights, const T* input, std::size_t b, int size,
                             T* gradient) requires std::same_as<T, double> {
-  constexpr double kPerStep = 1.0 / (WeightsAlong::kStep * WeightsAlong::kStep);
-  second_.resize(batches_.size());
-  for (std::size_t t = 0; t < batches_.size(); ++t) {
-    second_[t].assign(batches_[t].residuals.size(), 0.0);
+  if constexpr (std::same_as<T, double>) {  // Clang 14 instantiates it for float, too
+    constexpr double kPerStep = 1.0 / (WeightsAlong::kStep * WeightsAlong::kStep);
+    second_.resize(batches_.size());
+    for (std::size_t t = 0; t < batches_.size(); ++t) {
+      second_[t].assign(batches_[t].residuals.size(), 0.0);
+    }
+    AddResiduals(weights.behind.data(), input, b, size, kPerStep);
+    AddResiduals(weights.ahead.data(), input, b, size, kPerStep);
+    AddResiduals(weights.here.data(), input, b, size, -2.0 * kPerStep);
+    std::fill(sum_.begin(), sum_.end(), 0.0);
+    double cost = 0.0;  // not asked for
+    for (std::size_t t = 0; t < batches_.size(); ++t) {
+      terms_.terms[t].term->Evaluate(b, size, z_.data(), &batches_[t]);
+      AddSquares(t, b, size, second_[t].data(), &cost);
+    }
+    BackwardSum(weights.here.data(), gradient);
   }
-  AddResiduals(weights.behind.data(), input, b, size, kPerStep);
-  AddResiduals(weights.ahead.data(), input, b, size, kPerStep);
-  AddResiduals(weights.here.data(), input, b, size, -2.0 * kPerStep);
-  std::fill(sum_.begin(), sum_.end(), 0.0);
-  double cost = 0.0;  // not asked for
-  for (std::size_t t = 0; t < batches_.size(); ++t) {
-    terms_.terms[t].term->Evaluate(b, size, z_.data(), &batches_[t]);
-    AddSquares(t, b, size, second_[t].data(), &cost);
-  }
-  BackwardSum(weights.here.data(), gradient);
 }
 
 // Adds `scale` times the residuals to second_.

@@ -161,9 +161,9 @@ class SceneReader {
   }
 
   void ChangeSources() {
-    for (const auto& [name, source] : changes_.sources) {
-      const std::size_t index = About("materials", [&] { return MaterialIndex(name); });
-      scene_.materials[index].source = source;
+    for (const auto& change : changes_.sources) {
+      const std::size_t index = About("materials", [&] { return MaterialIndex(change.first); });
+      scene_.materials[index].source = change.second;
     }
   }
 

@@ -200,6 +200,22 @@ TEST_F(Cli, AFitThatExplainsNothingSaysSo) {
             json::array({"the fit explains nothing: values are wrong by 100 % in the mean"}));
 }
 
+TEST_F(Cli, MeasureProvesTheEnergyOfNetworks) {
+  const std::string material = " --material=builtin:satin-gold";
+  ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);
+  const std::string measure =
+      "measure --prove --prove_seconds=2 --samples=2000 --fit=" + Path("a.safetensors") + material;
+  const json proof = json::parse(Run(measure + " --json").out)["energy_proof"];
+  EXPECT_GE(proof["max_directional_albedo"],
+            json::parse(Run(measure + " --json").out)["max_directional_albedo"]);
+  EXPECT_EQ(proof["is_proved"], proof["proved_part"] > 0.999999);
+  const std::string text = Run(measure).out;
+  EXPECT_THAT(text, HasSubstr("  energy: no directional albedo is above "));
+  EXPECT_THAT(text, HasSubstr("  reciprocity: by construction"));
+  EXPECT_THAT(Run("measure --prove --fit=ggx:f0=0,alpha=0.2" + material).err,
+              HasSubstr("--prove needs a network"));
+}
+
 TEST_F(Cli, MeasureSaysWhereEnergyIsMade) {
   const std::string material = " --material=builtin:spectralon --scale_to_albedo=1.5 ";
   ASSERT_EQ(Run("fit" + material + kQuick + "--out=" + Path("a.safetensors")).status, 0);

@@ -8,12 +8,22 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace pbnbrdf {
 
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  // The message becomes one line: control characters, which it may quote from a damaged file, become '?'.
+  explicit Error(std::string message) : std::runtime_error(OneLine(std::move(message))) {}
+
+ private:
+  static std::string OneLine(std::string message) {
+    for (char& c : message) {
+      if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    }
+    return message;
+  }
 };
 
 // The arguments written one after the other, as operator<< writes them.

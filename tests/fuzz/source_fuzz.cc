@@ -1,0 +1,50 @@
+// Any file as a material: it is refused, or its values are finite and not negative.
+#include "fuzz_input.h"
+#include "pbnbrdf/sources/open_brdf.h"
+
+namespace pbnbrdf {
+namespace {
+
+void CheckValues(const Brdf& brdf) {
+  std::vector<DirectionPair> pairs;
+  for (const double theta_i : {0.0, 0.3, 0.9, 1.5, 1.7}) {
+    for (const double theta_o : {0.0, 0.31, 1.2, 1.57}) {
+      for (const double phi_o : {0.0, 2.0, 3.14159}) {
+        pairs.push_back({FromSpherical(theta_i, 0.4), FromSpherical(theta_o, phi_o)});
+      }
+    }
+  }
+  std::vector<Rgb> values(pairs.size());
+  brdf.Evaluate(pairs, values);
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    for (const double value : values[n]) {
+      Expect(std::isfinite(value) && value >= 0.0, "a value is finite and not negative");
+    }
+    Expect(brdf.Certainty(pairs[n]) > 0.0, "certainty is positive");
+    brdf.IsKnown(pairs[n]);
+  }
+}
+
+void CheckMeasurements(const Brdf& brdf) {
+  for (const BrdfSample& sample : brdf.Measurements()) {
+    Expect(sample.pair.AboveHorizon(), "a measurement is above the horizon");
+    Expect(sample.weight > 0.0 && sample.weight <= 1.0, "a weight is in (0, 1]");
+    for (const double value : sample.value) Expect(std::isfinite(value), "a measurement is finite");
+  }
+}
+
+}  // namespace
+}  // namespace pbnbrdf
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const pbnbrdf::FuzzFile file(data, size);
+  pbnbrdf::MayRefuse([&] {
+    const auto brdf = pbnbrdf::OpenBrdf(file.path());
+    pbnbrdf::CheckValues(*brdf);
+    pbnbrdf::CheckMeasurements(*brdf);
+    if (const auto estimate = brdf->BestEstimate(pbnbrdf::Brdf::Estimate::kLikeliest)) {
+      pbnbrdf::CheckValues(*estimate);
+    }
+  });
+  return 0;
+}
