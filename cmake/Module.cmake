@@ -3,12 +3,18 @@ add_library(pbnbrdf_warnings INTERFACE)
 target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
-if(PBNBRDF_SANITIZE OR PBNBRDF_FUZZ)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-                      $<$<BOOL:${PBNBRDF_FUZZ}>:-fsanitize=fuzzer-no-link>)
-  add_link_options(-fsanitize=address,undefined)
+if(PBNBRDF_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
+if(PBNBRDF_SANITIZE)
+  add_compile_options(-fsanitize=${PBNBRDF_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${PBNBRDF_SANITIZE})
   # Eigen allocates otherwise under the address sanitizer, and libceres frees what headers allocated.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
+endif()
+if(PBNBRDF_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 # pbnbrdf_precompile(TARGET [HEADER ...]): the headers of the standard library that most files include are parsed

@@ -171,14 +171,14 @@ Enclosure<D> floor(const Enclosure<D>& x) {
   return y;
 }
 
-// Of an angle within [-2 pi, 2 pi].
+// Of an angle within [-4 pi, 4 pi].
 template <int D>
 Enclosure<D> cos(const Enclosure<D>& x) {
   constexpr double kPi = 3.14159265358979323846;
   const auto cosines = [](const Interval& at) {
     Interval values = {std::min(std::cos(at.low), std::cos(at.high)),
                        std::max(std::cos(at.low), std::cos(at.high))};
-    for (int k = -3; k <= 3; ++k) {
+    for (int k = -4; k <= 4; ++k) {
       if (at.low < k * kPi && k * kPi < at.high)
         (k % 2 == 0 ? values.high : values.low) = k % 2 == 0 ? 1.0 : -1.0;
     }

@@ -13,6 +13,10 @@ using testing::HasSubstr;
 
 TEST(Text, LowerCaseIsThatOfAscii) { EXPECT_EQ(LowerCase("Az_9\xc3\x84"), "az_9\xc3\x84"); }
 
+TEST(Error, IsOneLine) {
+  EXPECT_STREQ(Error("a: field 'b\n\x1b[1m\x7f\xc3\x84'").what(), "a: field 'b??[1m?\xc3\x84'");
+}
+
 TEST(Text, SplitsAndTrims) {
   EXPECT_THAT(Split(" a, b ,,c\r", ','), ElementsAre("a", "b", "", "c"));
   EXPECT_THAT(Split("", ','), ElementsAre(""));

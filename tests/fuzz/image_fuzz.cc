@@ -1,4 +1,4 @@
-// Any file as an image: it is refused, or has a finite value for each pixel and channel.
+// Any file as an image: it is refused, or has a value for each pixel and channel (which may be infinite).
 #include "fuzz_input.h"
 #include "pbnbrdf/image/image.h"
 
@@ -9,7 +9,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const pbnbrdf::Image image = pbnbrdf::OpenImage(file.path());
     Expect(image.rgb.size() == 3 * std::size_t(image.width) * std::size_t(image.height),
            "there are three values for each pixel");
-    for (const float value : image.rgb) Expect(std::isfinite(value), "a pixel is finite");
   });
   return 0;
 }

@@ -366,6 +366,9 @@ TEST(Exr, SizesAreBoundedBeforeMemoryIsTaken) {
   WriteBytes(folder / "a.exr", WithSize(bytes, 60000, 60000) + std::string(1 << 19, '\1'));
   EXPECT_THAT(ErrorOf([&] { ReadExr(folder / "a.exr"); }),
               HasSubstr("60000 x 60000 pixels, at most 134217728 are read"));
+  // Long enough for its table of lines, and still far too short for a billion bytes of pixels.
+  WriteBytes(folder / "a.exr", WithSize(bytes, 60000, 2000) + std::string(1 << 14, '\1'));
+  EXPECT_THAT(ErrorOf([&] { ReadExr(folder / "a.exr"); }), HasSubstr(" bytes can't hold them"));
 }
 
 TEST(Exr, DamageIsAnErrorOrOtherPixels) {

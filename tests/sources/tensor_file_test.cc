@@ -68,6 +68,18 @@ TEST_F(TensorFileTest, LiesAboutSizesAreRefused) {
               HasSubstr("two fields are named 'grid'"));
 }
 
+// Its last field, of no bytes, begins where the file ends, or one byte behind.
+TEST_F(TensorFileTest, AnEmptyFieldBehindTheEndIsRefused) {
+  std::string bytes = Small().Add("empty", 1, {0}, "").Bytes();
+  EXPECT_EQ(Read(bytes).Text("empty"), "");
+  bytes.pop_back();
+  EXPECT_THAT(ErrorOfReading(bytes), HasSubstr("truncated or damaged: field '"));
+  bytes = TensorWriter().Add("empty", 1, {0}, "").Bytes();
+  const std::size_t offset = 18 + 2 + 5 + 2 + 1;
+  ++bytes[offset];
+  EXPECT_THAT(ErrorOfReading(bytes), HasSubstr("truncated or damaged: field 'empty'"));
+}
+
 TEST_F(TensorFileTest, DamagedHeadersAreRefused) {
   const std::string good = Small().Bytes();
   std::string bytes = good;
