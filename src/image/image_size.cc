@@ -9,8 +9,8 @@ namespace pbnbrdf {
 namespace {
 
 // An image of one colour takes about a byte for so many pixels, compressed as well as OpenEXR can; a black frame
-// around a small picture takes nothing. Images of up to 4 million pixels are read whatever their file's size.
-constexpr std::uintmax_t kPixelsPerByte = 3000, kAlwaysPixels = std::uintmax_t{1} << 22;
+// around a small picture takes nothing. Images of up to 2 million pixels are read whatever their file's size.
+constexpr std::uintmax_t kPixelsPerByte = 3000, kAlwaysPixels = std::uintmax_t{1} << 21;
 
 }  // namespace
 

@@ -78,8 +78,7 @@ TensorFile::Field TakeField(const std::string& path, const std::string& name,
   field.offset = cursor->Number<std::uint64_t>();
   for (std::size_t k = 0; k < rank; ++k) field.shape.push_back(cursor->Number<std::uint64_t>());
   const std::size_t left = file_bytes - std::min<std::size_t>(field.offset, file_bytes);
-  if (field.offset > file_bytes ||
-      !Count(field.shape, left / kElementBytes[type], &field.count)) {
+  if (field.offset > file_bytes || !Count(field.shape, left / kElementBytes[type], &field.count)) {
     Fail(path, ": truncated or damaged: field '", name, "', ", ShapeText(field.shape), " of ",
          kElementBytes[type], " bytes each from byte ", field.offset,
          " on, goes beyond the file's ", file_bytes, " bytes");
