@@ -1,7 +1,7 @@
 #!/bin/sh
 # What there is to do here:
 #   ./do demo | test | build | peers | bench | experiments NAME
-#   ./do sanitize | threads | fuzz [SECONDS] | coverage | wheel | docs | deb | deb-test
+#   ./do sanitize | fuzz [SECONDS] | wheel | docs | deb | deb-test
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
@@ -134,31 +134,6 @@ deb_test() {
   as_root chroot "$root" test ! -e /usr/bin/pbnbrdf
 }
 
-# The tests of what runs in parallel under the thread sanitizer. oneTBB's library isn't built with it: what it does
-# inside is left out.
-threads() {
-  configure build-threads -DPBNBRDF_SANITIZE=thread -DPBNBRDF_BENCHMARKS=OFF \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
-  modules="base brdf metrics problem proof render solve"
-  # shellcheck disable=SC2046
-  cmake --build build-threads --parallel "$(nproc)" --target $(printf '%s_tests ' $modules)
-  for module in $modules; do
-    TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/tsan.supp" "build-threads/bin/${module}_tests" --gtest_brief=1
-  done
-}
-
-# Which lines of src and include the tests run, as a table and, in build-coverage/index.html, line by line.
-coverage() {
-  packages="$packages gcovr"
-  configure build-coverage -DPBNBRDF_COVERAGE=ON -DPBNBRDF_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
-  cmake --build build-coverage --parallel "$(nproc)"
-  find build-coverage -name '*.gcda' -delete
-  ctest --test-dir build-coverage --output-on-failure --parallel "$(nproc)" --exclude-regex '^(package|interop_.*)$'
-  gcovr --root . --filter src/ --filter include/ --exclude-throw-branches --print-summary \
-    --html-details build-coverage/index.html -j "$(nproc)" build-coverage | tail -n 40
-}
-
 # fuzz [SECONDS]: each format of files, and fits, for so long under the same sanitizers.
 fuzz() {
   packages="$packages clang-14 libclang-rt-14-dev llvm-14"
@@ -228,16 +203,14 @@ case ${1:-} in
   bench) build microbenchmarks && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
   sanitize) sanitize ;;
-  threads) threads ;;
   fuzz) fuzz "${2:-}" ;;
-  coverage) coverage ;;
   docs) docs ;;
   wheel) wheel ;;
   deb) deb ;;
   deb-test) deb_test ;;
   *)
     echo "usage: ./do demo | test | build | peers | bench | experiments NAME" >&2
-    echo "       ./do sanitize | threads | fuzz [SECONDS] | coverage | wheel | docs | deb | deb-test" >&2
+    echo "       ./do sanitize | fuzz [SECONDS] | wheel | docs | deb | deb-test" >&2
     exit 2
     ;;
 esac

@@ -3,10 +3,6 @@ add_library(pbnbrdf_warnings INTERFACE)
 target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
-if(PBNBRDF_COVERAGE)
-  add_compile_options(--coverage -fprofile-update=atomic)
-  add_link_options(--coverage)
-endif()
 if(PBNBRDF_SANITIZE)
   add_compile_options(-fsanitize=${PBNBRDF_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PBNBRDF_SANITIZE})
