@@ -1,4 +1,5 @@
 // pbnbrdf measure
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -8,13 +9,15 @@
 #include "measure/measures.h"
 #include "opened_fit.h"
 #include "pbnbrdf/proof/energy_proof.h"
+#include "progress.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
 const std::string kProofNotes =
-    R"(max_directional_albedo is what a quadrature finds at many directions of the light. --prove bounds it at all
-of them, by interval arithmetic; a network's ripples make that slow: what isn't proved in the time is said.
+    R"(max_directional_albedo is what a quadrature finds at many directions of the light. --prove
+bounds it at all of them, by interval arithmetic. Networks whose values ripple take long: what
+isn't proved in the time is said.
 
 )";
 constexpr double kMaxSamples = 1e8;  // 7 GB of samples
@@ -77,6 +80,18 @@ std::string ProofText(const EnergyProof& proof, const NeuralBrdf& network) {
   return text;
 }
 
+// Shows on a terminal how far it is.
+EnergyProof Prove(const NeuralBrdf& network, EnergyProofOptions options) {
+  const ProgressLine line(/*quiet=*/false);
+  options.on_progress = [&](double proved_part, double seconds) {
+    line.Show(StrCat("proved for ", std::lround(100.0 * proved_part),
+                     " % of the light's directions, ", SecondsText(seconds)));
+  };
+  const EnergyProof proof = ProveEnergy(network, options);
+  line.Show("");
+  return proof;
+}
+
 int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
   const OpenedFit fit = OpenFit(options.fit);
   const std::unique_ptr<Brdf> material = options.material.Open();
@@ -87,7 +102,7 @@ int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
   });
   std::string text = MeasuresText(measures);
   if (options.prove) {
-    const EnergyProof proof = ProveEnergy(*network, options.proof);
+    const EnergyProof proof = Prove(*network, options.proof);
     measures["energy_proof"] = ToJson(proof);
     text += ProofText(proof, *network);
   }

@@ -44,6 +44,7 @@ class Prover {
   EnergyProof Run() {
     MakeCells();
     while (timer_.Seconds() < options_.seconds && pieces_ < options_.max_pieces) {
+      if (options_.on_progress) options_.on_progress(ProvedPart(), timer_.Seconds());
       std::vector<Cell<D>*> next = NextCells();
       if (next.empty()) break;
       std::vector<Cell<D>> more(next.size());
@@ -210,6 +211,14 @@ class Prover {
     return part;
   }
 
+  double ProvedPart() const {
+    double part = 0.0;
+    for (const Cell<D>& cell : cells_) {
+      if (cell.bound <= kProvedAlbedo) part += PartOfHemisphere(cell.box);
+    }
+    return part;
+  }
+
   EnergyProof Result() const {
     const auto worst =
         std::max_element(cells_.begin(), cells_.end(),
@@ -219,9 +228,7 @@ class Prover {
     proof.estimate = worst->estimate;
     proof.theta_i = worst->box.center[0];
     if constexpr (kOuter > 1) proof.phi_i = worst->box.center[1];
-    for (const Cell<D>& cell : cells_) {
-      if (cell.bound <= kProvedAlbedo) proof.proved_part += PartOfHemisphere(cell.box);
-    }
+    proof.proved_part = ProvedPart();
     proof.cells = cells_.size();
     proof.pieces = computed_;
     proof.seconds = timer_.Seconds();

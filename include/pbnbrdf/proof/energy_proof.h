@@ -23,6 +23,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "pbnbrdf/network/neural_brdf.h"
 
@@ -34,6 +35,8 @@ inline constexpr double kProvedAlbedo = 1.0 + 1e-6;
 struct EnergyProofOptions {
   double seconds = 60.0;
   std::size_t max_pieces = 4'000'000;  // about 100 bytes each
+  // Called now and then if set.
+  std::function<void(double proved_part, double seconds)> on_progress = {};
 };
 
 struct EnergyProof {
