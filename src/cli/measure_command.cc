@@ -68,7 +68,7 @@ std::string ProofText(const EnergyProof& proof, const NeuralBrdf& network) {
   } else {
     text +=
         StrCat("  energy: no directional albedo is above 1 + 1e-6 for ", 100.0 * proof.proved_part,
-               " % of the light's directions; elsewhere above ", proof.bound);
+               " % of the light's directions, none above ", proof.bound, " elsewhere");
   }
   text += StrCat(" (interval arithmetic on ", proof.pieces, " pieces in ", proof.seconds,
                  " s, rounding of about 1e-12 not included)\n  non-negativity: by construction, f "

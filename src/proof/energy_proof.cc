@@ -26,6 +26,7 @@ constexpr std::size_t kCutOneIn = 4;
 constexpr double kNear = 1e-4;
 // The part of the time after which what can't be proved gets as good a bound as possible.
 constexpr double kNearOnes = 0.8;
+
 template <int D>
 struct Cell {
   Box<D - kIntegrated> box;
