@@ -3,7 +3,7 @@ import re
 
 project = "pbnbrdf"
 author = "The pbnbrdf authors"
-copyright = author  # noqa: A001
+copyright = author
 extensions = ["myst_parser"]
 html_theme = "furo"
 html_title = "pbnbrdf"

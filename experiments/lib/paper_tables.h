@@ -20,8 +20,8 @@ struct PaperRecord {
   Reciprocity reciprocity;
   Energy energy;
   ImageErrors picture;  // against the material's own; not of kItself
-  double lpips =
-      std::numeric_limits<double>::quiet_NaN();  // of that picture, where it was measured
+  // Of that picture, where it was measured.
+  double lpips = std::numeric_limits<double>::quiet_NaN();
 };
 
 // A row for each method, in the order in which they first appear; of each column the median over materials and the

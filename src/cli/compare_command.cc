@@ -11,6 +11,7 @@
 #include "measure/shown_lpips.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/metrics/image_metrics.h"
+#include "pbnbrdf/metrics/lpips.h"
 
 namespace pbnbrdf::cli {
 namespace {

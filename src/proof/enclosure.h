@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace pbnbrdf {
 
@@ -174,7 +175,7 @@ Enclosure<D> floor(const Enclosure<D>& x) {
 // Of an angle within [-4 pi, 4 pi].
 template <int D>
 Enclosure<D> cos(const Enclosure<D>& x) {
-  constexpr double kPi = 3.14159265358979323846;
+  constexpr double kPi = std::numbers::pi;
   const auto cosines = [](const Interval& at) {
     Interval values = {std::min(std::cos(at.low), std::cos(at.high)),
                        std::max(std::cos(at.low), std::cos(at.high))};
@@ -191,7 +192,7 @@ Enclosure<D> cos(const Enclosure<D>& x) {
 
 template <int D>
 Enclosure<D> sin(const Enclosure<D>& x) {
-  constexpr double kPi = 3.14159265358979323846;
+  constexpr double kPi = std::numbers::pi;
   return cos(x - kPi / 2);
 }
 

@@ -3,8 +3,8 @@
 // A quantity is known as its value at the box's centre, how far it is from that at most (its radius), and for each
 // variable an interval of its derivative, as middle and radius. Products with a layer's weights W then are products
 // with W (centres, middles) and with |W| (radii): the kernels' own. A radius is the smaller one of what the radii of
-// the layer's inputs give and of what the derivatives give: the first is exact for boxes of any size, the second is
-// nearer for small ones, as it knows that inputs depend on each other.
+// the layer's inputs give and of what the derivatives give: the first is the smaller one in large boxes, the second
+// in small ones, as it knows that inputs depend on each other.
 #pragma once
 
 #include <array>

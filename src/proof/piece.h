@@ -47,6 +47,7 @@ struct Integrand {
   Inputs<Enclosure<D>> inputs;
 };
 
+// f cos theta_o d(wo) by dt and d(phi), with theta_h = (pi/2) t^2 and wi at azimuth 0, or phi_i.
 template <int D>
 Integrand<D> IntegrandOn(Encoding encoding, const Box<D>& box) {
   using V = Enclosure<D>;

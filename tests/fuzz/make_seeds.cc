@@ -3,8 +3,6 @@
 //   make_seeds FOLDER PROBLEMS      PROBLEMS: the folder problems/ of the sources
 //
 // A seed is FOLDER/TARGET/FORMAT/NAME: TARGET_fuzz runs on each FORMAT by itself.
-#include <zip.h>
-
 #include <cstdio>
 #include <filesystem>
 
@@ -13,14 +11,14 @@
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
-#include "pbnbrdf/models/builtin.h"
+#include "sources/archive_writer.h"
 #include "sources/npy_writer.h"
 #include "sources/rgl_writer.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kMaxProblemBytes = 1 << 20;
+constexpr std::uintmax_t kMaxBytes = 1 << 20;
 
 class Seeds {
  public:
@@ -40,11 +38,8 @@ class Seeds {
 // A model of Keras 3: the weights in a ZIP archive.
 std::string KerasArchive(const std::string& weights) {
   const std::string path = std::filesystem::temp_directory_path() / "make_seeds.keras";
-  zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
-  zip_source_t* source = zip_source_buffer(archive, weights.data(), weights.size(), 0);
-  zip_file_add(archive, "model.weights.h5", source, 0);
-  zip_close(archive);
-  const std::string bytes = ReadFile(path, kMaxProblemBytes);
+  WriteArchive(path, "model.weights.h5", weights);
+  const std::string bytes = ReadFile(path, kMaxBytes);
   std::filesystem::remove(path);
   return bytes;
 }
@@ -123,8 +118,7 @@ void AddTexts(Seeds* seeds) {
 void AddScenes(Seeds* seeds, const std::string& problems) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(problems)) {
     const std::string ending = entry.path().extension();
-    const std::string bytes =
-        entry.is_regular_file() ? ReadFile(entry.path(), kMaxProblemBytes) : "";
+    const std::string bytes = entry.is_regular_file() ? ReadFile(entry.path(), kMaxBytes) : "";
     // To paint a sky takes a second under the sanitizers.
     if (ending == ".json" && bytes.find("\"sky\"") == bytes.npos) seeds->Add("scene/json", bytes);
     if (ending == ".flags") seeds->Add("problem/flags", bytes);
@@ -138,6 +132,9 @@ void AddScenes(Seeds* seeds, const std::string& problems) {
   seeds->Add(
       "mesh/obj",
       "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 \\\n3//1 4//1\n");
+}
+
+void AddMeshesAndImages(Seeds* seeds) {
   seeds->Add("mesh/obj", "f -1 1 2\nv 0 0 0\nv 1 0 0\nv 1 1 0 # behind\n");
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   seeds->Add("mesh/ply",
@@ -169,6 +166,7 @@ int main(int argc, char** argv) {
   pbnbrdf::AddTables(&seeds);
   pbnbrdf::AddTexts(&seeds);
   pbnbrdf::AddScenes(&seeds, argv[2]);
+  pbnbrdf::AddMeshesAndImages(&seeds);
   for (int n = 0; n < 8; ++n) {  // of no format: whatever the fit makes of it
     seeds.Add("fit/random",
               std::string(reinterpret_cast<const char*>(

@@ -1,7 +1,6 @@
 #include "pbnbrdf/sources/nbrdf_files.h"
 
 #include <hdf5.h>
-#include <zip.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include "network/tensor.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "sources/archive_writer.h"
 #include "sources/npy_writer.h"
 
 // For the sanitizers: HDF5 asks for as much memory as a damaged file says, copes with getting none,
@@ -280,14 +280,6 @@ TEST(NbrdfFiles, LayersAreFoundWhateverTheirNames) {
   read("/", words, "/one/kernel:0", "/one/bias:0", H5T_VARIABLE);
   std::filesystem::rename(path, folder / "weights");
   EXPECT_EQ(OpenNetwork(folder / "weights").weights(), wanted);
-}
-
-// A ZIP archive with one file in it.
-void WriteArchive(const std::string& path, const std::string& name, const std::string& content) {
-  zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
-  zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
-  ASSERT_GE(zip_file_add(archive, name.c_str(), source, 0), 0);
-  ASSERT_EQ(zip_close(archive), 0);
 }
 
 TEST(NbrdfFiles, ModelsOfKeras3AreArchives) {

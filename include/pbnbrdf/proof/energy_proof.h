@@ -10,13 +10,13 @@
 //
 //   F(c) + m (wi - c)  for the cell's wi,   plus or minus  e r (half of it in t and phi),
 //
-// an error of second order in the piece's size; or F's largest value in the piece, where that is less. The sum over
+// an error of second order in the piece's size; or a mean of F's largest values, where that is less. The sum over
 // the pieces of a cell is linear in wi: its largest value is at a corner. Cells are refined, pieces where they are least
 // certain, until all bounds are at most 1 + 1e-6 or the time is over.
 //
 // What it rests on: the mean value theorem, and double precision, whose rounding (about 1e-12 here) isn't
 // included. That f is not negative and, of a reciprocal encoding, the same to the bit for wi and wo exchanged,
-// needs no computation: f is max(0, expm1(z)), and h and d enter only as d and -d give the same bits
+// needs no computation: f is max(0, expm1(z)), and the inputs of z are the same bits for both orders
 // (encoding.h).
 //
 // [1] A. Neumaier. Interval Methods for Systems of Equations. Cambridge University Press, 1990: mean value forms.
@@ -43,8 +43,8 @@ struct EnergyProof {
   double bound = 0.0;     // no directional albedo of any channel is larger
   double estimate = 0.0;  // of the albedo where the bound is largest, by the pieces' centres
   double theta_i = 0.0, phi_i = 0.0;  // of that cell's centre, radians
-  double proved_part =
-      0.0;  // of all directions of the light, by solid angle: bound is at most 1 + 1e-6
+  // Of all directions of the light, by solid angle: where the bound is at most kProvedAlbedo.
+  double proved_part = 0.0;
   std::size_t cells = 0, pieces = 0;  // of wi; and how many were computed, of all cells
   double seconds = 0.0;
 
