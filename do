@@ -1,11 +1,13 @@
 #!/bin/sh
 # What there is to do here:
 #   ./do demo | test | build | peers | bench | experiments NAME
-#   ./do sanitize | fuzz [SECONDS] | wheel | docs | deb | deb-test
+#   ./do sanitize [address | thread] | fuzz [SECONDS] | coverage | clang | arm64 | wheel | docs | deb | deb-test
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
 build=build
+options=  # of CMake
+tests=    # options of CTest
 packages="ccache clang-format-14 cmake g++ libbenchmark-dev libceres-dev libeigen3-dev libembree-dev
           libgmock-dev libgoogle-glog-dev libgtest-dev libhdf5-dev libhwy-dev libjs-chart.js libopenexr-dev
           libpng-dev libtbb-dev libzip-dev ninja-build nlohmann-json3-dev pkgconf"
@@ -41,7 +43,8 @@ configure() {
 # build [TARGET ...]: all of it if none is named. Every command builds with the same flags in the same folder:
 # nothing is compiled twice.
 build() {
-  configure "$build"
+  # shellcheck disable=SC2086
+  configure "$build" $options
   cmake --build "$build" --parallel "$(nproc)" --target "${@:-all}"
 }
 
@@ -95,16 +98,63 @@ peers() {
 run_tests() {
   packages="$packages libegl-dev libgl1-mesa-dri libgles-dev"  # shaders run without a window
   build
-  ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)"
+  # shellcheck disable=SC2086
+  ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" $tests
 }
 
-# The tests under the address and undefined behaviour sanitizers, but those that run other programs.
+# Tests that run other programs than this project's.
+other_programs='^(package|format|interop_.*|GlslSource\..*)$'
+
+# Tests of what runs in parallel, those that the thread sanitizer slows down to minutes left out.
+in_parallel='^(Parallel|PerThread|LargestAlbedo|FitAnalytic|EnergyProof|Cases/ObjectiveTest|Objective|EnergyTerm'
+in_parallel="$in_parallel|MinibatchStream|Solvers/EverySolver|FitBrdf|ColorErrors|Coverage|Energy|Lpips|Render"
+in_parallel="$in_parallel|Render/EveryEstimator|Skip|Adaptive|Demand|CliFitCollection|CliFitScene)\."
+
+# The tests under sanitizers: of addresses and undefined behaviour; or of threads, those of what runs in parallel.
 sanitize() {
-  configure build-sanitize -DPBNBRDF_SANITIZE=address,undefined -DPBNBRDF_BENCHMARKS=OFF \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
-  cmake --build build-sanitize --parallel "$(nproc)"
-  ctest --test-dir build-sanitize --output-on-failure --parallel "$(nproc)" \
-    --exclude-regex '^(package|interop_.*|GlslSource\..*)$'
+  options="-DPBNBRDF_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"
+  build=build-$1
+  case $1 in
+    address)
+      options="$options -DPBNBRDF_SANITIZE=address,undefined"
+      tests="--exclude-regex $other_programs"
+      ;;
+    thread)
+      options="$options -DPBNBRDF_SANITIZE=thread"
+      tests="--tests-regex $in_parallel"
+      ;;
+  esac
+  run_tests
+}
+
+# The tests by Clang's build.
+clang() {
+  packages="$packages clang-14"
+  build=build-clang options=-DCMAKE_CXX_COMPILER=clang++-14
+  run_tests
+}
+
+# Which lines of src/ the tests of the modules reach, as a page in build-coverage/lines.
+coverage() {
+  packages="$packages gcovr"
+  build=build-coverage tests="--exclude-regex $other_programs"
+  options="-DPBNBRDF_COVERAGE=ON -DPBNBRDF_BENCHMARKS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"
+  run_tests
+  mkdir -p "$build/lines"
+  gcovr --root . --filter 'src/' --object-directory "$build" --gcov-ignore-parse-errors=all --print-summary \
+    --html-details "$build/lines/index.html" -j "$(nproc)" "$build"
+}
+
+# The kernels', the solvers' and the program's tests on arm64: cross-compiled, run by QEMU.
+arm64() {
+  packages="ccache cmake g++-aarch64-linux-gnu ninja-build pkgconf qemu-user-static"
+  install_packages
+  sh tests/arm64/root.sh build-arm64/root
+  build=build-arm64 options="-DCMAKE_TOOLCHAIN_FILE=tests/arm64/toolchain.cmake -DPBNBRDF_BENCHMARKS=OFF"
+  build pbnbrdf_program base_tests kernels_tests network_tests problem_tests solve_tests
+  for module in base kernels network problem solve; do
+    "$build/bin/${module}_tests"
+  done
 }
 
 # Debian packages: the program, and the library.
@@ -202,7 +252,15 @@ case ${1:-} in
   build) build ;;
   bench) build microbenchmarks && "$build/bin/microbenchmarks" ;;
   experiments) shift && experiments "$@" ;;
-  sanitize) sanitize ;;
+  sanitize)
+    case ${2:-address} in
+      address | thread) sanitize "${2:-address}" ;;
+      *) echo "usage: ./do sanitize [address | thread]" >&2 && exit 2 ;;
+    esac
+    ;;
+  coverage) coverage ;;
+  clang) clang ;;
+  arm64) arm64 ;;
   fuzz) fuzz "${2:-}" ;;
   docs) docs ;;
   wheel) wheel ;;
@@ -210,7 +268,8 @@ case ${1:-} in
   deb-test) deb_test ;;
   *)
     echo "usage: ./do demo | test | build | peers | bench | experiments NAME" >&2
-    echo "       ./do sanitize | fuzz [SECONDS] | wheel | docs | deb | deb-test" >&2
+    echo "       ./do sanitize [address | thread] | fuzz [SECONDS] | coverage | clang | arm64" >&2
+    echo "       ./do wheel | docs | deb | deb-test" >&2
     exit 2
     ;;
 esac

@@ -9,6 +9,10 @@ if(PBNBRDF_SANITIZE)
   # Eigen allocates otherwise under the address sanitizer, and libceres frees what headers allocated.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
+if(PBNBRDF_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
 if(PBNBRDF_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
@@ -26,17 +30,17 @@ function(pbnbrdf_precompile target)
 endfunction()
 
 # pbnbrdf_module(NAME [COMPONENT component] [MODULES module ...] [LIBS target ...] [PRIVATE_LIBS target ...]
-#                [HEADERS target ...] [PRECOMPILE header ...])
+#                [HEADERS target ...])
 #
 # The library pbnbrdf_NAME from src/NAME/*.cc and include/pbnbrdf/NAME/*.h. Each module's headers have an
 # include root of their own, so that including one of a module that isn't linked doesn't compile:
 #   "pbnbrdf/NAME/x.h"  public: for users, installed;
 #   "NAME/x.h"          internal: for the modules of this project that link NAME;
 #   "x.h"               for the module itself.
-# HEADERS are libraries of headers that only the module's own sources include. PRECOMPILE: see pbnbrdf_precompile.
+# HEADERS are libraries of headers that only the module's own sources include.
 # COMPONENT: core if not given.
 function(pbnbrdf_module name)
-  cmake_parse_arguments(M "" "COMPONENT" "MODULES;LIBS;PRIVATE_LIBS;HEADERS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(M "" "COMPONENT" "MODULES;LIBS;PRIVATE_LIBS;HEADERS" ${ARGN})
   if(NOT M_COMPONENT)
     set(M_COMPONENT core)
   endif()
@@ -50,7 +54,7 @@ function(pbnbrdf_module name)
     set(scope PUBLIC)
     add_library(pbnbrdf_${name} STATIC ${sources})
     target_link_libraries(pbnbrdf_${name} PRIVATE $<BUILD_INTERFACE:pbnbrdf_warnings>)
-    pbnbrdf_precompile(pbnbrdf_${name} ${M_PRECOMPILE})
+    pbnbrdf_precompile(pbnbrdf_${name})
   else()
     set(scope INTERFACE)
     add_library(pbnbrdf_${name} INTERFACE)

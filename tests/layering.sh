@@ -27,7 +27,7 @@ only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image
 only 'embree' render
 only 'hwy' kernels network
-only 'tbb' base solve render
+only 'tbb' base
 
 # Public headers that bring in Ceres are those about Ceres problems.
 if grep -rlE '#include [<"]ceres' include | grep -vE 'problem/ceres_problem.h|residuals/'; then

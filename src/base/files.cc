@@ -35,12 +35,33 @@ std::string PartialStart() {
 
 std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown error"; }
 
+// Opens a stream. Waiting for a pipe's other end may be interrupted by a signal, and goes on.
+template <typename Stream>
+Stream Open(const fs::path& path, std::ios::openmode mode) {
+  Stream stream;
+  do {
+    errno = 0;
+    stream.clear();
+    stream.open(path, mode | std::ios::binary);
+  } while (!stream && errno == EINTR);
+  return stream;
+}
+
+// Behind what was printed before. A signal that interrupts it doesn't end it.
 void WriteStandardOutput(std::string_view content) {
   errno = 0;
-  if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
-      std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    // Where an earlier write failed, its reason is gone.
+  while (std::fflush(stdout) != 0 && errno == EINTR) std::clearerr(stdout);
+  // Where an earlier write failed, its reason is gone.
+  if (std::ferror(stdout) != 0) {
     Fail("standard output: cannot write", errno != 0 ? ": " + Reason() : " all of it");
+  }
+  while (!content.empty()) {
+    const ssize_t written = write(STDOUT_FILENO, content.data(), content.size());
+    if (written >= 0) {
+      content.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EINTR) {
+      Fail("standard output: cannot write: ", Reason());
+    }
   }
 }
 
@@ -51,7 +72,7 @@ const std::string& PipeBytes(const std::string& path) {
   const std::lock_guard lock(mutex);
   const auto known = all.find(path);
   if (known != all.end()) return known->second;
-  std::ifstream in(path, std::ios::binary);
+  auto in = Open<std::ifstream>(path, std::ios::in);
   std::string bytes, block(kPipeBlock, '\0');
   while (in.read(block.data(), kPipeBlock), in.gcount() > 0) {
     bytes.append(block, 0, static_cast<std::size_t>(in.gcount()));
@@ -70,8 +91,7 @@ bool IsPipe(const std::string& path) {
 // Exactly `size` bytes from the file's beginning.
 std::string ReadBytes(const std::string& path, std::uintmax_t size) {
   if (IsPipe(path)) return PipeBytes(path).substr(0, size);
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
+  auto in = Open<std::ifstream>(path, std::ios::in);
   if (!in) Fail(path, ": cannot read: ", Reason());
   std::string bytes(size, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(size));
@@ -83,8 +103,7 @@ std::string ReadBytes(const std::string& path, std::uintmax_t size) {
 
 // False, with errno set, if not all of it could be written.
 bool WriteBytes(const fs::path& path, std::string_view content) {
-  errno = 0;
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  auto out = Open<std::ofstream>(path, std::ios::trunc);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
   return static_cast<bool>(out);

@@ -17,4 +17,6 @@ void WithThreads(int threads, const std::function<void()>& run) {
   arena.execute(run);
 }
 
+void Isolated(const std::function<void()>& run) { tbb::this_task_arena::isolate(run); }
+
 }  // namespace pbnbrdf

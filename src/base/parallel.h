@@ -1,4 +1,4 @@
-// parallel.h: work shared among threads, those of TBB.
+// parallel.h: work shared among threads. It is TBB's; nothing else calls TBB.
 #pragma once
 
 #include <cstddef>
@@ -12,5 +12,8 @@ void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& run)
 
 // Calls run(), in which ParallelFor uses at most `threads` threads; all there are if threads is 0.
 void WithThreads(int threads, const std::function<void()>& run);
+
+// Calls run(), while whose ParallelFor waits this thread takes up nothing from outside of it. For work under a lock.
+void Isolated(const std::function<void()>& run);
 
 }  // namespace pbnbrdf

@@ -1,22 +1,20 @@
 // pbnbrdf export
 #include "base/about.h"
-#include "base/text.h"
 #include "command_line.h"
 #include "material_options.h"
 #include "pbnbrdf/base/names.h"
 #include "pbnbrdf/export/export.h"
-#include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf::cli {
 namespace {
 
-constexpr std::size_t kHelpColumn = 9;  // behind the longest name
+constexpr std::size_t kHelpColumn = 15;  // behind the longest name
 
 struct ExportOptions {
   std::string fit;
   MaterialOptions material;
-  std::string format;
+  const ExportFormat* format = nullptr;
   std::string out, name;
 };
 
@@ -29,16 +27,13 @@ std::string FormatNames() {
   return names;
 }
 
-// A format's name and help a line, further lines indented.
+// A format's name and help a line.
 std::string FormatsHelp() {
   std::string text;
   for (const ExportFormat& format : ExportFormats()) {
     std::string name(format.name);
-    for (const std::string& line : Split(format.help, '\n')) {
-      name.resize(kHelpColumn, ' ');
-      text += StrCat("  ", name, line, "\n");
-      name.clear();
-    }
+    name.resize(kHelpColumn, ' ');
+    text += StrCat("  ", name, format.help, "\n");
   }
   return text;
 }
@@ -53,9 +48,10 @@ Fields ExportFields(ExportOptions* options) {
   fields.AddRequired(Custom(
       "format",
       [options](std::string_view text) {
-        options->format = FindNamed(ExportFormats(), "format=", text).name;
+        options->format = &FindNamed(ExportFormats(), "format=", text);
       },
-      [options] { return options->format; }, [] {}, FormatNames() + ", see below"));
+      [options] { return std::string(options->format ? options->format->name : ""); }, [] {},
+      FormatNames() + ", see below"));
   fields.AddRequired(Text("out", &options->out, "file to write; - is standard output"));
   fields.AddCommon(Text("name", &options->name,
                         "c, glsl: the function is called NAME_eval; torch: the class is called "
@@ -63,34 +59,34 @@ Fields ExportFields(ExportOptions* options) {
   return fields;
 }
 
-// Throws UsageError unless either a network is given or, for a MERL table, any source.
+// Throws UsageError unless either a network is given or, for a table, any source.
 void CheckSource(const ExportOptions& options) {
   const bool has_fit = !options.fit.empty(), has_material = !options.material.source.empty();
   if (has_fit && has_material) throw UsageError("--fit and --material: give one of them only");
   if (has_fit) return;
-  if (options.format != "merl") {
-    throw UsageError(has_material ? StrCat("--format=", options.format,
+  if (!options.format->takes_any_source) {
+    throw UsageError(has_material ? StrCat("--format=", options.format->name,
                                            " exports networks only: give one with --fit")
                                   : "--fit is required");
   }
   if (!has_material) throw UsageError("--fit or --material is required");
 }
 
-std::vector<FileContent> NetworkFiles(const ExportOptions& options) {
-  const NeuralBrdf network = OpenNetwork(options.fit);
-  return About(StrCat(options.fit, ", exported as ", options.format),
-               [&] { return ExportedFiles(network, options.format, options.out, options.name); });
+std::vector<FileContent> FilesOf(const Brdf& source, const std::string& what,
+                                 const ExportOptions& options) {
+  const std::string_view format = options.format->name;
+  return About(StrCat(what, ", exported as ", format),
+               [&] { return ExportedFiles(source, format, options.out, options.name); });
 }
 
 int RunExport(const ExportOptions& options, const Arguments&) {
   CheckSource(options);
   CheckOutputs({{"out", options.out}});
   if (!options.fit.empty()) {
-    WriteFiles(NetworkFiles(options));
-    return 0;
+    WriteFiles(FilesOf(OpenNetwork(options.fit), options.fit, options));
+  } else {
+    WriteFiles(FilesOf(*options.material.Open(), options.material.source, options));
   }
-  const std::unique_ptr<Brdf> material = options.material.Open();
-  About(options.material.source, [&] { return MerlBrdf::Tabulate(*material); }).Write(options.out);
   return 0;
 }
 
@@ -103,9 +99,10 @@ Command ExportCommand() {
       .usage = R"(  pbnbrdf export --fit=gold.safetensors --format=c --out=gold.h
   pbnbrdf export --fit=gold.safetensors --format=mitsuba --out=gold.py
   pbnbrdf export --material=builtin:satin-gold --format=merl --out=gold.binary
+  pbnbrdf export --material=goniometer.csv --format=bsdf --out=gold.bsdf
 )",
       .notes = StrCat(
-          R"(Formats:
+          R"(Formats; csv, bsdf and merl are of any source (--material), the others of networks (--fit):
 )",
           FormatsHelp(),
           R"(wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear RGB in

@@ -26,6 +26,14 @@ std::string IdentifierOf(const std::string& path) {
 
 using Files = std::vector<FileContent>;
 
+// The format of networks, `files`, given one as a source.
+template <Files (*files)(const NeuralBrdf&, const std::string&, const std::string&)>
+Files OfNetwork(const Brdf& source, const std::string& path, const std::string& identifier) {
+  const auto* network = dynamic_cast<const NeuralBrdf*>(&source);
+  if (!network) Fail(path, ": this format holds networks only, not ", source.Description());
+  return files(*network, path, identifier);
+}
+
 Files MitsubaFiles(const NeuralBrdf& network, const std::string& path, const std::string&) {
   constexpr std::string_view kPython = ".py";
   if (!path.ends_with(kPython)) Fail(path, ": a Mitsuba plugin's name ends with ", kPython);
@@ -49,11 +57,15 @@ Files KerasFiles(const NeuralBrdf& network, const std::string& path, const std::
   return NbrdfFiles(network, path);
 }
 
-Files MerlFiles(const NeuralBrdf& network, const std::string& path, const std::string&) {
-  return {{path, MerlBrdf::Tabulate(network).FileBytes()}};
+std::string MerlFile(const Brdf& source) { return MerlBrdf::Tabulate(source).FileBytes(); }
+
+// A file of one text or of bytes: `content` of the source, ...
+template <std::string (*content)(const Brdf&)>
+Files Table(const Brdf& source, const std::string& path, const std::string&) {
+  return {{path, content(source)}};
 }
 
-// A file of one text or of bytes: `content` of the network, and of the identifier if it takes one.
+// ... or of a network, and of the identifier if it takes one.
 template <auto content>
 Files OneFile(const NeuralBrdf& network, const std::string& path, const std::string& identifier) {
   if constexpr (std::is_invocable_v<decltype(content), const NeuralBrdf&, const std::string&>) {
@@ -65,50 +77,54 @@ Files OneFile(const NeuralBrdf& network, const std::string& path, const std::str
 
 constexpr ExportFormat kFormats[] = {
     {"npy",
-     "BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the network must\n"
+     "BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the network must "
      "have relu units, two hidden layers and the cartesian encoding",
-     NpyFiles},
+     false, OfNetwork<NpyFiles>},
     {"h5",
-     "FILE.h5, a Keras file as NBRDF's are; the network must have relu units and the cartesian\n"
+     "FILE.h5, a Keras file as NBRDF's are; the network must have relu units and the cartesian "
      "encoding",
-     KerasFiles},
-    {"merl",
-     "FILE.binary, a table in the format of the MERL BRDF database, of an isotropic network\n"
-     "(--fit) or any isotropic source of reflectance (--material)",
-     MerlFiles},
+     false, OfNetwork<KerasFiles>},
+    {"merl", "FILE.binary, a table in the format of the MERL BRDF database, of an isotropic source",
+     true, Table<MerlFile>},
+    {"bsdf",
+     "FILE.bsdf, tables in the format of the RGL material database, which \"measured\" of "
+     "Mitsuba 3 reads in its RGB variants",
+     true, Table<RglFile>},
+    {"bsdf_spectral", "the same with spectra, for Mitsuba's spectral variants and pbrt-v4", true,
+     Table<SpectralRglFile>},
     {"csv",
-     "theta_i,phi_i,theta_o,phi_o (radians) and r,g,b on a grid of Rusinkiewicz angles that is\n"
+     "theta_i,phi_i,theta_o,phi_o (radians) and r,g,b on a grid of Rusinkiewicz angles that is "
      "dense near the mirror direction",
-     OneFile<CsvTable>},
+     true, Table<CsvTable>},
     {"c",
-     "a C99 header with void NAME_eval(const float wi[3], const float wo[3], float rgb[3]); it\n"
+     "a C99 header with void NAME_eval(const float wi[3], const float wo[3], float rgb[3]); it "
      "needs <math.h> only",
-     OneFile<CSource>},
-    {"glsl", "vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later",
-     OneFile<GlslSource>},
+     false, OfNetwork<OneFile<CSource>>},
+    {"glsl", "vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later", false,
+     OfNetwork<OneFile<GlslSource>>},
     {"mitsuba",
      "FILE.py, which registers the BSDF \"pbnbrdf\" in Mitsuba 3, and FILE_weights.safetensors",
-     MitsubaFiles},
-    {"onnx", "a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32",
-     OneFile<OnnxModel>},
+     false, OfNetwork<MitsubaFiles>},
+    {"onnx", "a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32", false,
+     OfNetwork<OneFile<OnnxModel>>},
     {"torch",
-     "FILE.py with a torch.nn.Module, NAME: brdf(wi, wo), ... x 3 each, in double precision",
-     OneFile<TorchModule>},
+     "FILE.py with a torch.nn.Module, NAME: brdf(wi, wo), ... x 3 each, in double precision", false,
+     OfNetwork<OneFile<TorchModule>>},
 };
 
 }  // namespace
 
 std::span<const ExportFormat> ExportFormats() { return kFormats; }
 
-std::vector<FileContent> ExportedFiles(const NeuralBrdf& network, std::string_view format,
+std::vector<FileContent> ExportedFiles(const Brdf& source, std::string_view format,
                                        const std::string& path, const std::string& name) {
   return FindNamed(kFormats, "format=", format)
-      .files(network, path, name.empty() ? IdentifierOf(path) : name);
+      .files(source, path, name.empty() ? IdentifierOf(path) : name);
 }
 
-void Export(const NeuralBrdf& network, std::string_view format, const std::string& path,
+void Export(const Brdf& source, std::string_view format, const std::string& path,
             const std::string& name) {
-  WriteFiles(ExportedFiles(network, format, path, name));
+  WriteFiles(ExportedFiles(source, format, path, name));
 }
 
 }  // namespace pbnbrdf

@@ -62,6 +62,14 @@ std::string OnnxModel(const NeuralBrdf& network);
 // gradients. It needs nothing but torch. name: an identifier. Throws Error otherwise.
 std::string TorchModule(const NeuralBrdf& network, const std::string& name);
 
+// The bytes of a file as those of the RGL database (sources/rgl.h, [1] there), of their sizes: 8 theta_i, uniform in
+// cos theta_i, the last one 90 degrees; one phi_i, or 17 of an anisotropic source; 128 x 128 normals, 32 x 32 colours.
+// What it holds at the nodes is the source, in between it is what such tables interpolate.
+std::string RglFile(const Brdf& source);
+
+// The same with spectra of 16 wavelengths, from 400 to 700 nm, that are seen as the source's colours (sources/cie.h).
+std::string SpectralRglFile(const Brdf& source);
+
 // A CSV with the columns theta_i,phi_i,theta_o,phi_o (radians) and r,g,b (linear, 1/sr, without the
 // cosine), one header line. The grid is one of Rusinkiewicz angles:
 //

@@ -29,6 +29,19 @@ inline constexpr bool kManyRegisters = HWY_MAX_BYTES >= 64 || HWY_ARCH_ARM_A64;
 // Elsewhere there are fewer bits, and division is fast enough.
 inline constexpr bool kHas14BitReciprocals = PBNBRDF_HAS_AVX512;
 
+// x, but at least or at most a bound; a NaN stays one. On x86 max and min return their second operand where one is
+// NaN; on arm64 they return the other one.
+template <class D, class V>
+HWY_INLINE V AtLeast(D d, hn::TFromD<D> least, V x) {
+  const V bound = hn::Set(d, least);
+  return HWY_ARCH_X86 ? hn::Max(bound, x) : hn::IfThenElse(hn::Lt(x, bound), bound, x);
+}
+template <class D, class V>
+HWY_INLINE V AtMost(D d, hn::TFromD<D> most, V x) {
+  const V bound = hn::Set(d, most);
+  return HWY_ARCH_X86 ? hn::Min(bound, x) : hn::IfThenElse(hn::Gt(x, bound), bound, x);
+}
+
 // 1 / x for normal x, relative error below 2e-7.
 template <class D, class V>
 HWY_INLINE V Reciprocal(D d, V x) {
@@ -67,8 +80,7 @@ template <class D, class V>
 HWY_INLINE V FastTanh(D d, V x) {
   constexpr float kRound = 12582912.0f;  // the last bit of 1.5 * 2^23 is worth 1
   constexpr float kMaxArgument = (kTanhIntervals - 0.55f) * kTanhWidth;
-  // x86 returns the second operand where one is NaN.
-  const V size = hn::Min(hn::Set(d, kMaxArgument), hn::Abs(x));
+  const V size = AtMost(d, kMaxArgument, hn::Abs(x));
   const V interval = hn::MulAdd(size, hn::Set(d, 1.0f / kTanhWidth), hn::Set(d, kRound));
   const auto index = hn::BitCast(hn::RebindToSigned<D>(), interval);
   const V r = hn::NegMulAdd(hn::Sub(interval, hn::Set(d, kRound)), hn::Set(d, kTanhWidth), size);

@@ -54,7 +54,7 @@ HWY_INLINE V Sign(V x) {
 // overflow yet.
 HWY_INLINE V GrownAt(const float* z) {
   const F d;
-  return hn::Exp(d, hn::Min(hn::Set(d, 40.0f), hn::LoadU(d, z)));
+  return hn::Exp(d, AtMost(d, 40.0f, hn::LoadU(d, z)));
 }
 
 // The sign of log1p(a) - log1p(b) is that of a - b: the gradients below need no logarithm.
@@ -103,7 +103,7 @@ void VectorReflectanceSums(const float* z, const float* weights, float* sums) {
   for (int c = 0; c < 3; ++c) {
     V sum = hn::Zero(d);
     for (int n = 0; n < kBatch; n += static_cast<int>(hn::Lanes(d))) {
-      const V grown = hn::Exp(d, hn::Max(hn::Zero(d), hn::LoadU(d, z + c * kBatch + n)));
+      const V grown = hn::Exp(d, AtLeast(d, 0.0f, hn::LoadU(d, z + c * kBatch + n)));
       sum = hn::MulAdd(hn::LoadU(d, weights + n), hn::Sub(grown, hn::Set(d, 1.0f)), sum);
     }
     sums[c] += hn::GetLane(hn::SumOfLanes(d, sum));

@@ -39,7 +39,7 @@ struct TanhOf {
 struct ReluOf {
   template <class D, class V>
   HWY_INLINE V operator()(D d, V x) const {
-    return hn::Max(hn::Zero(d), x);  // keeps a NaN
+    return AtLeast(d, 0, x);
   }
 };
 

@@ -46,12 +46,14 @@ Result<T> MakeResult(std::unique_ptr<T[]> values, std::initializer_list<std::siz
   return Result<T>(data, shape, owner);
 }
 
+bool IsUnit(const Vec3& v) { return std::abs(Dot(v, v) - 1.0) <= kUnitTolerance; }
+
 // Row n of the array as a direction. Throws ValueError unless it is a unit vector.
 template <typename T>
 Vec3 DirectionAt(const Rows<T>& rows, std::size_t n, const char* name) {
   const T* v = rows.data() + 3 * n;
   const Vec3 direction = {double(v[0]), double(v[1]), double(v[2])};
-  if (!(std::abs(Dot(direction, direction) - 1.0) <= kUnitTolerance)) {
+  if (!IsUnit(direction)) {
     throw nb::value_error(StrCat(name, ": row ", n, " is not a unit vector: (", direction.x, ", ",
                                  direction.y, ", ", direction.z, ")")
                               .c_str());
@@ -63,6 +65,25 @@ template <typename T>
 void CheckSizes(const Rows<T>& wi, std::size_t size, const char* name) {
   if (wi.shape(0) != size) {
     throw nb::value_error(StrCat(name, ": ", size, " rows, where wi has ", wi.shape(0)).c_str());
+  }
+}
+
+// Pairs of the rows from `first` on. Throws ValueError unless they are unit vectors.
+template <typename T>
+void CopyPairs(const Rows<T>& wi, const Rows<T>& wo, std::size_t first,
+               std::span<DirectionPair> pairs) {
+  const T *from_wi = wi.data() + 3 * first, *from_wo = wo.data() + 3 * first;
+  bool are_unit = true;  // without a branch for each row
+  for (DirectionPair& pair : pairs) {
+    pair = {{double(from_wi[0]), double(from_wi[1]), double(from_wi[2])},
+            {double(from_wo[0]), double(from_wo[1]), double(from_wo[2])}};
+    are_unit &= IsUnit(pair.wi) & IsUnit(pair.wo);
+    from_wi += 3;
+    from_wo += 3;
+  }
+  for (std::size_t n = 0; !are_unit && n < pairs.size(); ++n) {
+    DirectionAt(wi, first + n, "wi");
+    DirectionAt(wo, first + n, "wo");
   }
 }
 
@@ -82,12 +103,11 @@ Result<T> Evaluate(const Brdf& brdf, const Rows<T>& wi, const Rows<T>& wo) {
       thread_local std::vector<Rgb> rgb;
       pairs.resize(last - first);
       rgb.resize(last - first);
-      for (std::size_t n = first; n < last; ++n) {
-        pairs[n - first] = {DirectionAt(wi, n, "wi"), DirectionAt(wo, n, "wo")};
-      }
+      CopyPairs<T>(wi, wo, first, pairs);
       evaluated.Evaluate(pairs, rgb);
-      for (std::size_t n = first; n < last; ++n) {
-        for (std::size_t c = 0; c < 3; ++c) values[3 * n + c] = static_cast<T>(rgb[n - first][c]);
+      T* value = values.get() + 3 * first;
+      for (const Rgb& f : rgb) {
+        for (const double channel : f) *value++ = static_cast<T>(channel);
       }
     });
   }

@@ -1,10 +1,10 @@
 #include "geometry.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/task_arena.h>
 
 #include <limits>
 
+#include "base/parallel.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
@@ -153,7 +153,7 @@ struct Geometry::Embree {
     for (std::size_t i = 0; i < meshes.size(); ++i) AttachMesh(meshes[i].mesh, unsigned(i));
     if (!spheres.empty()) AttachSpheres(static_cast<unsigned>(meshes.size()));
     // One thread, as the order of building decides which of two equally near shapes a ray hits.
-    tbb::task_arena(1).execute([&] { rtcCommitScene(scene); });
+    WithThreads(1, [&] { rtcCommitScene(scene); });
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE) Fail("Embree can't build the scene: error ", int(error));
   }

@@ -1,9 +1,8 @@
 #include "materials.h"
 
-#include <tbb/task_arena.h>
-
 #include <cmath>
 
+#include "base/parallel.h"
 #include "base/timer.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/scaled.h"
@@ -54,8 +53,7 @@ void Materials::Open(std::size_t material) {
   try {
     // Isolated: while this thread waits for the opener's own tasks, it must not start another tile,
     // which may wait for the mutex.
-    tbb::this_task_arena::isolate(
-        [&] { slot.material = Prepare(scene_.materials[material], open_); });
+    Isolated([&] { slot.material = Prepare(scene_.materials[material], open_); });
   } catch (...) {
     slot.failure = std::current_exception();
   }

@@ -26,7 +26,7 @@ PathTracer::PathTracer(const Scene& scene, const RenderOptions& options, Materia
 
 std::int64_t PathTracer::Trace(const SampleRange& range, std::span<PixelSum> pixels,
                                Statistics* statistics, RequestLog* log) const {
-  Worker& worker = workers_.local();
+  Worker& worker = workers_.Local();
   Wavefront& wave = worker.wave;
   wave.stats = &statistics->OfThisThread();
   wave.log = log;

@@ -1,10 +1,9 @@
 // path_tracer.h: traces paths through blocks of pixels and adds them to the image.
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <span>
 
+#include "base/per_thread.h"
 #include "camera.h"
 #include "materials.h"
 #include "pixels.h"
@@ -52,7 +51,7 @@ class PathTracer {
   const PinholeCamera camera_;
   const Geometry geometry_;
   const Lights lights_;
-  mutable tbb::enumerable_thread_specific<Worker> workers_;
+  mutable PerThread<Worker> workers_;
 };
 
 }  // namespace pbnbrdf

@@ -71,11 +71,10 @@ class Values {
   double Next(const Type& type) {
     if (format_ == Format::kText) return ParseNumber("value", Word());
     if (left() < type.size) Fail("truncated");
-    char bytes[sizeof(double)];
-    data_.copy(bytes, type.size, at_);
+    std::string bytes(data_.substr(at_, type.size));
     at_ += type.size;
-    if (format_ == Format::kBigEndian) std::reverse(bytes, bytes + type.size);
-    return type.read(bytes);
+    if (format_ == Format::kBigEndian) std::reverse(bytes.begin(), bytes.end());
+    return type.read(bytes.data());
   }
 
   std::size_t left() const { return data_.size() - at_; }

@@ -1,7 +1,5 @@
 #include "pbnbrdf/render/render.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -42,10 +40,7 @@ class Renderer {
     // The first pass takes one sample of each pixel, so that an early stop leaves a whole image.
     for (int done = 0, count = 1; done < options_.samples_per_pixel && !Finished(); done += count) {
       if (done > 0) count = std::min(kSamplesPerPass, options_.samples_per_pixel - done);
-      // Tiles take times that differ much, so that each is a task of its own.
-      tbb::parallel_for(
-          std::size_t{0}, tiles_.size(), [&](std::size_t i) { TraceTile(done, count, &tiles_[i]); },
-          tbb::simple_partitioner());
+      ParallelFor(tiles_.size(), [&](std::size_t i) { TraceTile(done, count, &tiles_[i]); });
       materials_.ThrowIfFailed();
     }
   }

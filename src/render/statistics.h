@@ -8,8 +8,7 @@
 //   RenderWork work = statistics.Sum();  // over all threads
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
+#include "base/per_thread.h"
 #include "base/timer.h"
 #include "pbnbrdf/render/work.h"
 
@@ -52,19 +51,19 @@ class ThreadStatistics {
 class Statistics {
  public:
   // skip: RenderOptions::skip.
-  explicit Statistics(bool skip) : threads_(skip) {}
+  explicit Statistics(bool skip) : threads_([skip] { return ThreadStatistics(skip); }) {}
 
-  ThreadStatistics& OfThisThread() { return threads_.local(); }
+  ThreadStatistics& OfThisThread() { return threads_.Local(); }
 
   // While no thread counts.
   RenderWork Sum() const {
     RenderWork sum;
-    for (const ThreadStatistics& thread : threads_) sum += thread.work();
+    threads_.ForEach([&](const ThreadStatistics& thread) { sum += thread.work(); });
     return sum;
   }
 
  private:
-  tbb::enumerable_thread_specific<ThreadStatistics> threads_;
+  PerThread<ThreadStatistics> threads_;
 };
 
 }  // namespace pbnbrdf

@@ -2,14 +2,13 @@
 // baseline.
 //
 // [1] D. Kingma, J. Ba. Adam: A Method for Stochastic Optimization. ICLR 2015.
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "base/parallel.h"
 #include "kernels/losses.h"
 #include "pbnbrdf/base/error.h"
 #include "problem/minibatch_gradient.h"
@@ -42,13 +41,13 @@ class Adam {
   void RunEpoch(Stop stop) {
     for (bool ends = false, stopped = false; !ends && !stopped;) {
       ends = current_.ends_epoch;
-      tbb::task_group ahead;
-      ahead.run([&] { stream_.Draw(&next_); });
-      for (std::size_t b = 0; b < current_.count && !stopped; ++b) {
-        stopped = stop();
-        if (!stopped) Step(b);
-      }
-      ahead.wait();
+      const auto step = [&] {
+        for (std::size_t b = 0; b < current_.count && !stopped; ++b) {
+          stopped = stop();
+          if (!stopped) Step(b);
+        }
+      };
+      ParallelFor(2, [&](std::size_t k) { k == 0 ? step() : stream_.Draw(&next_); });
       std::swap(current_, next_);
     }
   }

@@ -7,6 +7,7 @@
 
 #include "pbnbrdf/base/error.h"
 #include "sources/cie.h"
+#include "sources/rgl_square.h"
 #include "sources/tensor_file.h"
 #include "sources/warp_tables.h"
 
@@ -38,20 +39,6 @@ struct Table {
 
   double At(double x, double y) const { return Bilinear(values.data(), rows, columns, x, y); }
 };
-
-// theta of a unit vector, exact near the pole, where acos isn't.
-double Elevation(const Vec3& w) {
-  return 2.0 * std::asin(std::min(1.0, 0.5 * Length(w - Vec3{0.0, 0.0, 1.0})));
-}
-
-double Azimuth(const Vec3& w) { return std::atan2(w.y, w.x); }
-
-double ElevationColumn(double theta) { return std::sqrt(2.0 * theta / kPi); }
-
-double AzimuthRow(double phi) {
-  const double v = (phi + kPi) / (2.0 * kPi);
-  return v - std::floor(v);
-}
 
 // The place of an angle among ascending nodes, of which there may be only one.
 NodePosition PlaceAmong(const std::vector<float>& nodes, double angle) {
@@ -142,7 +129,6 @@ struct RglBrdf::Tables {
   TableBlend Blend(const NodePosition& phi, const NodePosition& theta) const;
   SquarePoint NormalAt(const Vec3& wi, const Vec3& half) const;
   Place Locate(const DirectionPair& pair) const;
-  Vec3 Reflected(const Vec3& wi, const SquarePoint& normal) const;
   Rgb Value(const DirectionPair& pair, Interpolation interpolation) const;
   double Linear(const Place& place, std::size_t channel) const;
   double MonotoneCubic(const Place& place, std::size_t channel) const;
@@ -314,14 +300,6 @@ double RglBrdf::Tables::Doubt(double theta) const {
   return has_next ? std::min(at.fraction, 1.0 - at.fraction) : at.fraction;
 }
 
-// wo, given the place of its half vector.
-Vec3 RglBrdf::Tables::Reflected(const Vec3& wi, const SquarePoint& normal) const {
-  const double turn = isotropic ? Azimuth(wi) : 0.0;
-  const Vec3 half =
-      FromSpherical(0.5 * kPi * normal.x * normal.x, (2.0 * normal.y - 1.0) * kPi + turn);
-  return 2.0 * Dot(wi, half) * half - wi;
-}
-
 double RglBrdf::Tables::Pdf(const Vec3& wi, const Vec3& wo) const {
   const Vec3 sum = wi + wo;
   const double length = Length(sum), sin_theta = std::hypot(sum.x, sum.y) / length;
@@ -439,7 +417,7 @@ Vec3 RglBrdf::Sample(const Vec3& wi, double u0, double u1) const {
   const TableBlend blend = t.Blend(t.PhiAt(wi), t.ThetaAt(wi));
   const SquarePoint color = t.luminance.FromUniform(blend, {u0, u1});
   const SquarePoint normal = t.vndf.FromUniform(blend, color);
-  return t.Reflected(wi, normal);
+  return ReflectedAt(wi, DirectionAt(normal, t.isotropic ? Azimuth(wi) : 0.0));
 }
 
 }  // namespace pbnbrdf

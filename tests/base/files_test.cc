@@ -2,7 +2,14 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "test_util.h"
@@ -43,6 +50,110 @@ TEST(Files, APipeIsReadOnceAndKept) {
   EXPECT_THAT(ErrorOf([&] { ReadFile(pipe, 5); }), HasSubstr("100000 bytes, at most 5"));
   EXPECT_THAT(ErrorOf([&] { ReadFile("/dev/null", 5); }), HasSubstr("/dev/null: cannot read"));
   EXPECT_THAT(ErrorOf([&] { ReadStart("/dev/zero", 5); }), HasSubstr("a pipe of more than"));
+}
+
+// The size that a file of the kernel has isn't that of what it holds, as with one that shrinks while it is read.
+TEST(Files, AFileThatShrinksIsRefused) {
+  const std::string path = "/sys/kernel/mm/transparent_hugepage/enabled";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs " << path;
+  EXPECT_THAT(ErrorOf([&] { ReadFile(path, 1 << 20); }), HasSubstr(" of 4096 bytes"));
+}
+
+// Interrupts system calls all the time, without asking for their restart, as Python does.
+class Interruptions {
+ public:
+  Interruptions() {
+    struct sigaction action = {};
+    action.sa_handler = [](int) {};
+    sigaction(SIGALRM, &action, &before_);
+    const itimerval often = {{0, 200}, {0, 200}};
+    setitimer(ITIMER_REAL, &often, nullptr);
+  }
+  ~Interruptions() {
+    const itimerval never = {};
+    setitimer(ITIMER_REAL, &never, nullptr);
+    sigaction(SIGALRM, &before_, nullptr);
+  }
+  Interruptions(const Interruptions&) = delete;
+  Interruptions& operator=(const Interruptions&) = delete;
+
+ private:
+  struct sigaction before_;
+};
+
+TEST(Files, AnInterruptedCallGoesOn) {
+  TemporaryFolder folder;
+  std::string bytes(3 << 20, 'x');
+  for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = char(k * k >> 8);
+  for (const char* name : {"a", "b", "c"}) {
+    const std::string pipe = folder / name;
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const int keeps_it_open = open(pipe.c_str(), O_RDWR);
+    const Interruptions interruptions;
+    std::thread writer([&] {
+      WriteFile(pipe, bytes);
+      close(keeps_it_open);
+    });
+    std::string found;
+    const std::string error = ErrorOf([&] { found = ReadFile(pipe, bytes.size()); });
+    writer.join();
+    EXPECT_EQ(error, "");
+    EXPECT_TRUE(found == bytes);
+    WriteFile(folder / "file", bytes);
+    EXPECT_TRUE(ReadFile(folder / "file", bytes.size()) == bytes);
+  }
+}
+
+// The pipe's other end comes late, and is not interrupted itself.
+TEST(Files, AnInterruptedReaderWaitsForItsWriter) {
+  using std::chrono::milliseconds;
+  TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+    std::this_thread::sleep_for(milliseconds(20));
+    std::ofstream out(pipe);
+    std::this_thread::sleep_for(milliseconds(100));
+    out << "here";
+  });
+  const Interruptions interruptions;
+  std::string found;
+  const std::string error = ErrorOf([&] { found = ReadFile(pipe, 10); });
+  writer.join();
+  EXPECT_EQ(error, "");
+  EXPECT_EQ(found, "here");
+}
+
+// A pipe that is slow to take what comes, while signals do.
+TEST(Files, StandardOutputIsWrittenThroughInterruptions) {
+  const std::string bytes(1 << 20, 'x');
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  std::fflush(stdout);
+  const int before = dup(1);
+  dup2(ends[1], 1);
+  close(ends[1]);
+  std::size_t received = 0;
+  std::thread reader([&] {
+    char block[4096];
+    for (ssize_t n; (n = read(ends[0], block, sizeof(block))) != 0;) {
+      if (n > 0) received += std::size_t(n);
+      std::this_thread::sleep_for(std::chrono::microseconds(300));
+    }
+  });
+  std::string error;
+  {
+    const Interruptions interruptions;
+    error = ErrorOf([&] { WriteFile("-", bytes); });
+  }
+  dup2(before, 1);
+  close(before);
+  reader.join();
+  EXPECT_EQ(error, "");
+  EXPECT_EQ(received, bytes.size());
 }
 
 TEST(Files, AFailedWriteLeavesNothing) {

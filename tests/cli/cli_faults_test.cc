@@ -1,9 +1,12 @@
 // What is left when a command is ended from outside, and when the disk is full: files as they were, or whole ones.
 #include <sys/mount.h>
 
+#include <chrono>
 #include <random>
+#include <thread>
 
 #include "cli_fixture.h"
+#include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
 namespace {
@@ -37,6 +40,13 @@ class CliFaults : public Cli {
     return command;
   }
 
+  // Runs the command and sends it the signal after so many seconds.
+  void RunUntil(const std::string& signal, double seconds, const std::string& command) const {
+    std::ignore = std::system(StrCat("timeout -s ", signal, " ", seconds, " ", PBNBRDF_PROGRAM, " ",
+                                     command, " > ", Path("log"), " 2>&1")
+                                  .c_str());
+  }
+
   // That the file is the old one, or whole.
   void ExpectOldOrWhole(const Job& job, const std::string& path, const std::string& when) {
     const std::string content = ReadFile(path, 1 << 30);
@@ -61,9 +71,7 @@ TEST_F(CliFaults, EndedAtAnyMomentByAnySignalItLeavesWholeFiles) {
         WriteBytes(out, kOld);
         const double seconds = std::uniform_real_distribution<double>(0.01, most)(random);
         const std::string when = StrCat("SIG", signal, " after ", seconds, " s");
-        std::ignore = std::system(StrCat("timeout -s ", signal, " ", seconds, " ", PBNBRDF_PROGRAM,
-                                         " ", With(job.command, out), " > ", Path("log"), " 2>&1")
-                                      .c_str());
+        RunUntil(signal, seconds, With(job.command, out));
         ExpectOldOrWhole(job, out, when);
         // Only what can't be caught leaves a part behind.
         if (std::string(signal) != "KILL") {
@@ -72,6 +80,68 @@ TEST_F(CliFaults, EndedAtAnyMomentByAnySignalItLeavesWholeFiles) {
       }
     }
     std::filesystem::remove_all(Path("to"));
+  }
+}
+
+// The networks of a scene, or of a folder of materials, are each there as a whole or not at all; the same command
+// goes on.
+TEST_F(CliFaults, ManyFitsAreLeftWholeEach) {
+  std::vector<std::string> commands = {"fit --jobs=2 --material='builtin:*'" + kQuick +
+                                       "--out_dir=" + Path("to")};
+#ifdef PBNBRDF_HAS_RENDER
+  commands.push_back("fit-scene --scene=" PBNBRDF_PROBLEMS "/scenes/gallery.json" + kQuick +
+                     "--out_dir=" + Path("to"));
+#endif
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> seconds(0.01, 3.0);
+  for (const std::string& command : commands) {
+    for (const char* signal : {"INT", "TERM", "KILL", "INT", "TERM", "KILL"}) {
+      RunUntil(signal, seconds(random), command);
+      if (!std::filesystem::exists(Path("to"))) continue;
+      for (const auto& file : std::filesystem::directory_iterator(Path("to"))) {
+        const std::string extension = file.path().extension();
+        if (extension == ".safetensors") {
+          EXPECT_NO_THROW(NeuralBrdf::Read(file.path())) << signal;
+        }
+        if (extension == ".part") {
+          EXPECT_STREQ(signal, "KILL");
+        }
+      }
+    }
+    EXPECT_EQ(Run(command + " --quiet").status, 0) << command;
+    std::filesystem::remove_all(Path("to"));
+  }
+}
+
+// What is cut or deleted while it is read is refused in one line, or was read before.
+TEST_F(CliFaults, AFileMayChangeUnderItsReader) {
+  const std::string table = Path("table.binary"), out = Path("out.csv");
+  ASSERT_EQ(Run("export --format=merl --material=builtin:satin-gold --out=" + table).status, 0);
+  const std::string whole = ReadFile(table, 1 << 26);
+  WriteBytes(Path("pairs.csv"), "theta_i,phi_i,theta_o,phi_o\n0.5,0,0.5,3\n");
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> seconds(0.0, 0.1);
+  for (int k = 0; k < 10; ++k) {
+    WriteBytes(table, whole);
+    std::thread other([&, wait = seconds(random)] {
+      std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+      if (k % 2 == 0) {
+        std::filesystem::resize_file(table, whole.size() / 2);
+      } else {
+        std::filesystem::remove(table);
+      }
+    });
+    const Result result =
+        Run("eval --material=" + table + " --directions=" + Path("pairs.csv") + " --out=" + out);
+    other.join();
+    if (result.status == 0) {
+      std::filesystem::remove(out);
+      continue;
+    }
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, StartsWith("pbnbrdf: " + table + ": "));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
   }
 }
 

@@ -1,6 +1,5 @@
 // Skipping work leaves the image the same, bit for bit, and is counted.
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <atomic>
@@ -9,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "base/parallel.h"
 #include "render/render_test_util.h"
 
 namespace pbnbrdf {
@@ -212,7 +212,7 @@ TEST(Skip, OpenersMayWorkInParallel) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, kThreads);
   const auto open = [](const std::string& source) {
     std::atomic<int> tasks = 0;
-    tbb::parallel_for(0, 64, [&](int) {
+    ParallelFor(64, [&](std::size_t) {
       std::this_thread::sleep_for(std::chrono::microseconds(200));
       ++tasks;
     });

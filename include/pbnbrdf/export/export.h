@@ -1,4 +1,5 @@
-// export.h: a fitted network as a file for something else: a renderer, a compiler, a runtime.
+// export.h: a fitted network, or a table of any source, as a file for something else: a renderer, a compiler, a
+// runtime.
 #pragma once
 
 #include <span>
@@ -14,8 +15,9 @@ namespace pbnbrdf {
 // One of the formats, by its name.
 struct ExportFormat {
   std::string_view name;
-  std::string_view help;  // what is written, in lines of at most 91 columns
-  std::vector<FileContent> (*files)(const NeuralBrdf& network, const std::string& path,
+  std::string_view help;  // what is written
+  bool takes_any_source;  // else networks only
+  std::vector<FileContent> (*files)(const Brdf& source, const std::string& path,
                                     const std::string& identifier);
 };
 
@@ -25,13 +27,13 @@ std::span<const ExportFormat> ExportFormats();
 // it, the plugin for Mitsuba ....py and its weights, ..._weights.safetensors. name: how the
 // functions of source code are called; empty: as the file is, up to its first dot, with characters
 // that an identifier can't have replaced by '_'. Throws Error if the format can't hold this
-// network, if a name isn't what the format needs, or if there is no such format. The same network gives
+// source, if a name isn't what the format needs, or if there is no such format. The same source gives
 // the same bytes.
-std::vector<FileContent> ExportedFiles(const NeuralBrdf& network, std::string_view format,
+std::vector<FileContent> ExportedFiles(const Brdf& source, std::string_view format,
                                        const std::string& path, const std::string& name = "");
 
 // Writes them: whole, or not at all. Throws Error, also if a file can't be written.
-void Export(const NeuralBrdf& network, std::string_view format, const std::string& path,
+void Export(const Brdf& source, std::string_view format, const std::string& path,
             const std::string& name = "");
 
 }  // namespace pbnbrdf

@@ -7,10 +7,6 @@
 
 namespace pbnbrdf {
 
-inline Vec3 Cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // The vector must not be zero.
 inline Vec3 Normalized(const Vec3& a) { return (1.0 / Length(a)) * a; }
 

@@ -1,4 +1,4 @@
-// tensor_writer.h: small tensor files (tensor_file.h) for tests.
+// tensor_writer.h: the bytes of tensor files (tensor_file.h).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace pbnbrdf {
 
-// What is written may contradict itself: the tests of bad input want that.
+// What is written isn't checked: tests of bad input want fields that contradict each other.
 class TensorWriter {
  public:
   TensorWriter& Add(const std::string& name, std::uint8_t type, std::vector<std::uint64_t> shape,
@@ -17,12 +17,17 @@ class TensorWriter {
     return *this;
   }
 
+  TensorWriter& AddBytes(const std::string& name, const std::string& bytes) {
+    return Add(name, 1, {bytes.size()}, bytes);
+  }
+
   TensorWriter& AddFloats(const std::string& name, const std::vector<std::uint64_t>& shape,
                           const std::vector<float>& values) {
     return Add(name, 10, shape,
                {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
   }
 
+  // In place of the field of that name.
   TensorWriter& Replace(const std::string& name, const std::vector<std::uint64_t>& shape,
                         const std::vector<float>& values) {
     return Remove(name).AddFloats(name, shape, values);
