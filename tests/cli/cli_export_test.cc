@@ -14,9 +14,9 @@ TEST_F(Cli, ExportWritesEveryFormat) {
                 .status,
             0);
   const std::map<std::string, std::string> files = {
-      {"npy", "x_fc1.npy"}, {"h5", "x.h5"},     {"merl", "x.binary"},
-      {"csv", "x.csv"},     {"c", "x.h"},       {"glsl", "x.glsl"},
-      {"mitsuba", "x.py"},  {"onnx", "x.onnx"}, {"torch", "y.py"}};
+      {"npy", "x_fc1.npy"},        {"h5", "x.h5"},     {"merl", "x.binary"}, {"bsdf", "x.bsdf"},
+      {"bsdf_spectral", "y.bsdf"}, {"csv", "x.csv"},   {"c", "x.h"},         {"glsl", "x.glsl"},
+      {"mitsuba", "x.py"},         {"onnx", "x.onnx"}, {"torch", "y.py"}};
   const std::string help = Run("export --help").out;
   for (const auto& [format, file] : files) {
     EXPECT_THAT(help, HasSubstr("  " + format + " "));
@@ -25,7 +25,7 @@ TEST_F(Cli, ExportWritesEveryFormat) {
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_TRUE(std::filesystem::exists(Path(file))) << format;
   }
-  EXPECT_THAT(help, HasSubstr("npy | h5 | merl | csv | c | glsl | mitsuba | onnx | torch"));
+  EXPECT_THAT(help, HasSubstr("npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl"));
   EXPECT_EQ(NeuralBrdf::Read(Path("x_weights.safetensors")).weights(),
             NeuralBrdf::Read(network).weights());
   // The CSV names the directions that its values are at; they alone are evaluated again.
@@ -60,7 +60,7 @@ TEST_F(Cli, ExportsThatCannotBeAreNamed) {
               "--format=c exports networks only: give one with --fit");
   ExpectError("export --fit=x --format=c", 2, "--out is required");
   ExpectError(to + " --format=obj", 2,
-              "--format=obj is not one of npy | h5 | merl | csv | c | glsl");
+              "--format=obj is not one of npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl");
   ExpectError(to + " --format=c --name=a-b", 1, "a.safetensors, exported as c: name=a-b is not");
   ExpectError("export --format=npy --fit=" + network + " --out=" + Path("x_fc1.npy"), 1,
               "a.safetensors, exported as npy: an NBRDF network has relu units and the cartesian "
@@ -75,18 +75,25 @@ TEST_F(Cli, ExportsThatCannotBeAreNamed) {
 TEST_F(Cli, ExportMakesATableOfAnySource) {
   const std::string network = Path("a.safetensors");
   ASSERT_EQ(Run("fit --material=builtin:satin-gold" + kQuick + "--out=" + network).status, 0);
-  for (const auto& [flag, file] :
-       {std::pair("--fit=", "a.binary"), std::pair("--material=", "b.binary")}) {
-    const Result result = Run("export --format=merl " + (flag + network) + " --out=" + Path(file));
-    ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* format : {"merl", "bsdf", "csv"}) {
+    for (const auto& [flag, file] : {std::pair("--fit=", "a"), std::pair("--material=", "b")}) {
+      const Result result =
+          Run(StrCat("export --format=", format, " ", flag, network, " --out=", Path(file)));
+      ASSERT_EQ(result.status, 0) << result.err;
+    }
+    EXPECT_TRUE(ReadFile(Path("a"), 1 << 26) == ReadFile(Path("b"), 1 << 26)) << format;
   }
-  EXPECT_EQ(ReadFile(Path("a.binary"), 1 << 26), ReadFile(Path("b.binary"), 1 << 26));
+  EXPECT_EQ(Run("export --format=bsdf --material=builtin:rolled-brass --out=" + Path("brass.bsdf"))
+                .status,
+            0);
+  EXPECT_THAT(Run("info " + Path("brass.bsdf")).out,
+              HasSubstr("anisotropic, RGB, 17 x 8 incident directions"));
 }
 
 TEST_F(Cli, AnAnisotropicMaterialIsTabulatedByItsIsotropicFit) {
   const std::string brass = " --material=builtin:rolled-brass";
   ExpectError("export --format=merl" + brass + " --out=" + Path("out"), 1,
-              "builtin:rolled-brass: anisotropic, and a MERL table has no phi_h");
+              "builtin:rolled-brass, exported as merl: anisotropic, and a MERL table has no phi_h");
   ASSERT_EQ(Run("fit" + brass + kQuick + "--encoding=merl --out=" + Path("a.safetensors")).status,
             0);
   EXPECT_EQ(
