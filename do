@@ -141,7 +141,7 @@ coverage() {
   options="-DPBNBRDF_COVERAGE=ON -DPBNBRDF_BENCHMARKS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"
   run_tests
   mkdir -p "$build/lines"
-  gcovr --root . --filter 'src/' --object-directory "$build" --gcov-ignore-parse-errors=all --print-summary \
+  gcovr --root . --filter 'src/' --object-directory "$build" --gcov-ignore-parse-errors --print-summary \
     --html-details "$build/lines/index.html" -j "$(nproc)" "$build"
 }
 
