@@ -46,7 +46,8 @@ RglBrdf Written(const std::string& bytes) {
 }
 
 TEST(RglFile, HoldsTheSourceAtItsNodes) {
-  for (const char* name : {"wall-plaster", "satin-gold", "glossy-grey-paper", "brushed-copper"}) {
+  for (const char* name :
+       {"wall-plaster", "satin-gold", "glossy-grey-paper", "brushed-copper", "rolled-brass"}) {
     const auto source = MakeBuiltin(name);
     const RglBrdf file = Written(RglFile(*source));
     EXPECT_EQ(file.IsIsotropic(), source->IsIsotropic());

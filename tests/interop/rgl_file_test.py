@@ -9,7 +9,8 @@ from common import check, np, path, program, require
 mi, = require("mitsuba")
 import drjit as dr
 
-SOURCES = ["builtin:satin-gold", "builtin:wall-plaster", "builtin:glossy-grey-paper", "builtin:brushed-copper"]
+SOURCES = ["builtin:satin-gold", "builtin:wall-plaster", "builtin:glossy-grey-paper", "builtin:brushed-copper",
+           "builtin:rolled-brass"]
 
 
 def direction(theta, phi):
