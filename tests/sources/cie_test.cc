@@ -49,6 +49,14 @@ TEST(Cie, ConstantsAreGreyWhateverTheRange) {
   }
 }
 
+TEST(Cie, WavelengthsBeyondAllReasonAreRefused) {
+  const auto error = [](float last) {
+    return ErrorOf([&] { SpectrumToRgb(std::vector<float>{400, 700, last}); });
+  };
+  EXPECT_EQ(error(1e5f), "");
+  EXPECT_EQ(error(8e32f), "a wavelength of 8e+32 nm; at most 100000");
+}
+
 TEST(Cie, BandsHaveTheirColors) {
   const std::vector<float> wavelengths = Range(380, 780, 5);
   const std::vector<Rgb> weights = SpectrumToRgb(wavelengths);
