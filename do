@@ -105,7 +105,7 @@ run_tests() {
 # Tests that run other programs than this project's.
 other_programs='^(package|format|interop_.*|GlslSource\..*)$'
 
-# Tests of what runs in parallel, those that the thread sanitizer slows down to minutes left out.
+# Tests of what runs in parallel. Under the thread sanitizer a fit takes minutes.
 in_parallel='^(Parallel|PerThread|LargestAlbedo|FitAnalytic|EnergyProof|Cases/ObjectiveTest|Objective|EnergyTerm'
 in_parallel="$in_parallel|MinibatchStream|Solvers/EverySolver|FitBrdf|ColorErrors|Coverage|Energy|Lpips|Render"
 in_parallel="$in_parallel|Render/EveryEstimator|Skip|Adaptive|Demand|CliFitCollection|CliFitScene)\."
@@ -145,7 +145,7 @@ coverage() {
     --html-details "$build/lines/index.html" -j "$(nproc)" "$build"
 }
 
-# The kernels', the solvers' and the program's tests on arm64: cross-compiled, run by QEMU.
+# The program on arm64, and the tests of kernels, networks, problems and solvers: cross-compiled, run by QEMU.
 arm64() {
   packages="ccache cmake g++-aarch64-linux-gnu ninja-build pkgconf qemu-user-static"
   install_packages

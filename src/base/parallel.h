@@ -1,4 +1,4 @@
-// parallel.h: work shared among threads. It is TBB's; nothing else calls TBB.
+// parallel.h: work shared among threads. It is TBB's, which no other module calls.
 #pragma once
 
 #include <cstddef>

@@ -127,9 +127,10 @@ Tables NodesFor(bool isotropic) {
   for (std::size_t k = 0; k < kThetaI; ++k) {
     tables.theta_i.push_back(static_cast<float>(std::acos(1.0 - At(k, kThetaI))));
   }
-  tables.phi_i = {0.0f};
-  if (isotropic) return tables;
-  tables.phi_i.clear();
+  if (isotropic) {
+    tables.phi_i = {0.0f};
+    return tables;
+  }
   for (std::size_t k = 0; k < kAnisotropicPhiI; ++k) {
     tables.phi_i.push_back(static_cast<float>((2.0 * At(k, kAnisotropicPhiI) - 1.0) * kPi));
   }

@@ -21,7 +21,7 @@ static_assert(kFirst + kStep * (kEntries - 1) == kLast);
 constexpr double kToRgb[3][3] = {
     {3.2406, -1.5372, -0.4986}, {-0.9689, 1.8758, 0.0415}, {0.0557, -0.2040, 1.0570}};
 
-constexpr double kMustBegin = 430.0, kMustEnd = 660.0, kLongest = 1e5;
+constexpr double kMustBegin = 430.0, kMustEnd = 660.0;
 
 double Lobe(double x, double mean, double below, double above) {
   const double t = (x - mean) / (x < mean ? below : above);
@@ -50,8 +50,8 @@ std::vector<Rgb> SpectrumToRgb(std::span<const float> wavelengths) {
     Fail("wavelengths of ", wavelengths.front(), " to ", wavelengths.back(), " nm; a colour needs ",
          kMustBegin, " to ", kMustEnd);
   }
-  if (!(wavelengths.back() <= kLongest)) {
-    Fail("a wavelength of ", wavelengths.back(), " nm; at most ", kLongest);
+  if (!(wavelengths.back() <= kLongestWavelength)) {
+    Fail("a wavelength of ", wavelengths.back(), " nm; at most ", kLongestWavelength);
   }
   std::vector<Rgb> weights(wavelengths.size(), Rgb{});
   Rgb sums = {};

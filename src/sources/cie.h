@@ -19,6 +19,8 @@
 
 namespace pbnbrdf {
 
+inline constexpr float kLongestWavelength = 1e5f;  // nm, of what is taken for one
+
 // The colour matching functions x, y, z at a wavelength, nm.
 std::array<double, 3> ColorMatching(double wavelength);
 
@@ -28,7 +30,7 @@ double IlluminantD65(double wavelength);
 // Linear sRGB of a reflectance known at the wavelengths (nm, ascending) and linear in between:
 // rgb[c] = sum over k of weights[k][c] times its value at wavelength k. The weights of a channel sum
 // to 1; some are negative. A single wavelength: r = g = b. Throws Error if the wavelengths cover less
-// than 430 to 660 nm, the part without which a channel would be little more than a guess, or reach beyond 1e5 nm.
+// than 430 to 660 nm, the part without which a channel would be little more than a guess, or reach beyond kLongestWavelength.
 std::vector<Rgb> SpectrumToRgb(std::span<const float> wavelengths);
 
 // The same; its Error names the file.

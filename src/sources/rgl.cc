@@ -23,7 +23,6 @@ constexpr double kLastMeasured = 89.9 * kDegree;
 // certainty falls between nodes. A larger share or a faster fall brings fits nearer at measured angles, and
 // farther in pictures (experiments/measured.cc).
 constexpr double kLogOffset = 0.03, kCubicShare = 0.6, kDoubt = 7.7;
-constexpr float kLongestWave = 1e5f;       // nm
 constexpr std::size_t kShownText = 60;     // of a file's own description
 constexpr std::size_t kMostIsotropic = 2;  // phi_i nodes
 constexpr float kLastElevation = 1.5708f;  // pi / 2, rounded up
@@ -175,7 +174,7 @@ void RglBrdf::Tables::ReadColors(const TensorFile& file) {
         "rgb", Shape{phi_i.size(), theta_i.size(), 3, color_size.rows, color_size.columns});
     return;
   }
-  wavelengths = ReadNodes(file, "wavelengths", 1.0f, kLongestWave);
+  wavelengths = ReadNodes(file, "wavelengths", 1.0f, kLongestWavelength);
   const std::size_t n = wavelengths.size();
   spectra = file.Floats(
       "spectra", Shape{phi_i.size(), theta_i.size(), n, color_size.rows, color_size.columns});
