@@ -1,7 +1,7 @@
 #!/bin/sh
 # What there is to do here:
 #   ./do demo | test | build | peers | bench | experiments NAME
-#   ./do sanitize [address | thread] | fuzz [SECONDS] | coverage | clang | arm64 | wheel | docs | deb | deb-test
+#   ./do sanitize [address | thread] | fuzz [SECONDS] | coverage | clang | arm64 | wheel [PYTHON] | docs | deb | deb-test
 # On Debian 12, as root or with sudo.
 set -eu
 cd "$(dirname "$0")"
@@ -88,11 +88,15 @@ TXT
 
 # The Python packages that the tests of exported files need, in .peers. They skip without it.
 peers() {
-  # Mitsuba's LLVM variants compile with LLVM; the report's page is tested in Chromium.
-  packages="chromium libllvm19 python3-venv"
+  # Mitsuba's LLVM variants compile with LLVM; the report's page is tested in Chromium; shaders run on Mesa's Vulkan.
+  packages="chromium libllvm19 mesa-vulkan-drivers python3-venv"
+  command -v npm > /dev/null || packages="$packages npm"
   install_packages
   [ -x .peers/bin/python ] || python3 -m venv .peers
   .peers/bin/python -m pip install --quiet --disable-pip-version-check -r tests/interop/requirements.txt
+  # Slang's compiler; the package's own dependency, torch, isn't needed for it.
+  .peers/bin/python -m pip install --quiet --disable-pip-version-check --no-deps slangtorch==1.3.22
+  npm install --silent --no-audit --no-fund --prefix .peers gltf-validator@2.0.0-dev.3.10
 }
 
 run_tests() {
@@ -211,19 +215,23 @@ docs() {
   echo "open $build/docs/index.html"
 }
 
-# The Python package as a wheel in build/wheel, and its tests in an environment that has nothing else.
+# wheel [PYTHON]: the Python package as a wheel in build/wheel, and its tests in an environment that has nothing else.
+# PYTHON: python3, or another one of version 3.10 or later.
 wheel() {
+  python=${1:-python3}
   packages="$packages python3-dev python3-venv"
   install_packages
+  version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
   mkdir -p "$build/wheel"
-  rm -f "$build"/wheel/*.whl
-  [ -x .wheel/bin/python ] || python3 -m venv .wheel
-  .wheel/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$build/wheel" .
-  rm -rf "$build/wheel/clean"
-  python3 -m venv "$build/wheel/clean"
-  "$build/wheel/clean/bin/python" -m pip install --quiet --disable-pip-version-check "$build"/wheel/*.whl \
-    -r tests/python/requirements.txt
-  "$build/wheel/clean/bin/python" -m pytest -q -p no:cacheprovider tests/python
+  rm -f "$build"/wheel/*-cp"$(echo "$version" | tr -d .)"-*.whl
+  [ -x ".wheel/$version/bin/python" ] || "$python" -m venv ".wheel/$version"
+  ".wheel/$version/bin/python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$build/wheel" .
+  clean=$build/wheel/clean-$version
+  rm -rf "$clean"
+  "$python" -m venv "$clean"
+  "$clean/bin/python" -m pip install --quiet --disable-pip-version-check \
+    "$build"/wheel/*-cp"$(echo "$version" | tr -d .)"-*.whl -r tests/python/requirements.txt
+  "$clean/bin/python" -m pytest -q -p no:cacheprovider tests/python
   ls -l "$build"/wheel/*.whl
 }
 
@@ -265,13 +273,13 @@ case ${1:-} in
   arm64) arm64 ;;
   fuzz) fuzz "${2:-}" ;;
   docs) docs ;;
-  wheel) wheel ;;
+  wheel) wheel "${2:-}" ;;
   deb) deb ;;
   deb-test) deb_test ;;
   *)
     echo "usage: ./do demo | test | build | peers | bench | experiments NAME" >&2
     echo "       ./do sanitize [address | thread] | fuzz [SECONDS] | coverage | clang | arm64" >&2
-    echo "       ./do wheel | docs | deb | deb-test" >&2
+    echo "       ./do wheel [PYTHON] | docs | deb | deb-test" >&2
     exit 2
     ;;
 esac

@@ -93,8 +93,8 @@ struct ImageError {
   double rmse, flip;
 };
 
-// How paths leave materials, by their source. Of anisotropic ones it takes a second to find out.
-using Proposals = std::map<std::string, LobeProposal>;
+// How paths leave materials, by their source: found out once for each.
+using Proposals = std::map<std::string, Proposal>;
 
 // A material in a scene: the image of the material itself, and those of networks in its place.
 class Case {
@@ -107,7 +107,7 @@ class Case {
         proposals_(proposals),
         slot_(slot),
         truth_(OpenBrdf(source)),
-        proposal_(FitLobeProposal(*truth_)) {
+        proposal_(FitProposal(*truth_)) {
     scene_.materials[slot_].source = kSlot;
     demand_ = MeasureDemand(scene_, Opener([&] { return OpenBrdf(source); }),
                             {.threads = options_.threads})[slot_];
@@ -146,7 +146,7 @@ class Case {
       std::unique_ptr<Brdf> brdf = OpenBrdf(source);
       auto known = proposals_.find(source);
       if (known == proposals_.end()) {
-        known = proposals_.emplace(source, FitLobeProposal(*brdf)).first;
+        known = proposals_.emplace(source, FitProposal(*brdf)).first;
       }
       return {std::move(brdf), known->second};
     };
@@ -164,7 +164,7 @@ class Case {
   Proposals& proposals_;
   std::size_t slot_;
   std::unique_ptr<Brdf> truth_;
-  LobeProposal proposal_;
+  Proposal proposal_;
   MaterialDemand demand_;
   pbnbrdf::Image reference_;
 };

@@ -22,7 +22,7 @@ only() {
 }
 only 'gflags|glog' cli python
 only 'ceres|Eigen' models residuals problem solve
-only 'nlohmann' base measure models network render report cli python
+only 'nlohmann' base measure models network export render report cli python
 only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image
 only 'embree' render

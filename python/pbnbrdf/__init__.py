@@ -59,7 +59,8 @@ class Sampler:
 
     def sample(self, wi: ArrayLike, u: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(wo, pdf) of shapes (..., 3) and (...), for wi of shape (..., 3) and uniform numbers u in [0, 1) of shape
-        (..., 2). pdf (1/sr) is 0, and wo of no use, where wi isn't above the horizon."""
+        (..., 2). pdf (1/sr) is 0, and wo of no use, where wi isn't above the horizon or the facet drawn reflects to below
+        it: such a sample counts as 0."""
         wi = _directions("wi", wi).astype(np.float64)
         u = np.asarray(u, dtype=np.float64)
         if u.shape != (*wi.shape[:-1], 2):
@@ -137,8 +138,8 @@ class Network(Brdf):
         self._brdf.save(os.fspath(path))
 
     def export(self, format: str, path: str | os.PathLike[str], name: str = "") -> None:
-        """As pbnbrdf export: mitsuba, glsl, c, onnx, torch, merl, csv, h5 or npy. name: of functions of source code; by
-        default the file's."""
+        """As pbnbrdf export, in every format but gltf and materialx, which hold no networks. name: of functions of source
+        code; by default the file's."""
         self._brdf.export(format, os.fspath(path), name)
 
     def to_torch(self) -> Any:

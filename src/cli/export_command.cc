@@ -1,7 +1,10 @@
 // pbnbrdf export
+#include <iostream>
+
 #include "base/about.h"
 #include "command_line.h"
 #include "material_options.h"
+#include "model_fit.h"
 #include "pbnbrdf/base/names.h"
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/sources/open_brdf.h"
@@ -54,17 +57,17 @@ Fields ExportFields(ExportOptions* options) {
       FormatNames() + ", see below"));
   fields.AddRequired(Text("out", &options->out, "file to write; - is standard output"));
   fields.AddCommon(Text("name", &options->name,
-                        "c, glsl: the function is called NAME_eval; torch: the class is called "
-                        "NAME; by default, NAME is that of the file"));
+                        "c, glsl, hlsl, wgsl: the function is called NAME_eval; torch: the class "
+                        "is called NAME; by default, NAME is that of the file"));
   return fields;
 }
 
-// Throws UsageError unless either a network is given or, for a table, any source.
+// Throws UsageError unless either a network is given or, for a table or a model, any source.
 void CheckSource(const ExportOptions& options) {
   const bool has_fit = !options.fit.empty(), has_material = !options.material.source.empty();
   if (has_fit && has_material) throw UsageError("--fit and --material: give one of them only");
   if (has_fit) return;
-  if (!options.format->takes_any_source) {
+  if (options.format->source == ExportSource::kNetwork) {
     throw UsageError(has_material ? StrCat("--format=", options.format->name,
                                            " exports networks only: give one with --fit")
                                   : "--fit is required");
@@ -79,13 +82,32 @@ std::vector<FileContent> FilesOf(const Brdf& source, const std::string& what,
                [&] { return ExportedFiles(source, format, options.out, options.name); });
 }
 
+bool IsPrincipled(const Brdf& source) {
+  const auto* model = dynamic_cast<const AnalyticBrdf*>(&source);
+  return model != nullptr && model->model().name == "principled";
+}
+
+// The source, or the nearest model where the format holds models only; that is said.
+std::vector<FileContent> FilesOrNearest(const Brdf& source, const std::string& what,
+                                        const ExportOptions& options) {
+  if (options.format->source != ExportSource::kPrincipled || IsPrincipled(source)) {
+    return FilesOf(source, what, options);
+  }
+  Json errors;
+  const AnalyticBrdf nearest = About(what, [&] { return PrincipledFit(source, what, &errors); });
+  std::ostream& out = options.out == "-" ? std::cerr : std::cout;
+  out << "the nearest of its kind to " << what << ": " << nearest.Description() << "\n"
+      << ErrorsText(errors);
+  return FilesOf(nearest, what, options);
+}
+
 int RunExport(const ExportOptions& options, const Arguments&) {
   CheckSource(options);
   CheckOutputs({{"out", options.out}});
   if (!options.fit.empty()) {
-    WriteFiles(FilesOf(OpenNetwork(options.fit), options.fit, options));
+    WriteFiles(FilesOrNearest(OpenNetwork(options.fit), options.fit, options));
   } else {
-    WriteFiles(FilesOf(*options.material.Open(), options.material.source, options));
+    WriteFiles(FilesOrNearest(*options.material.Open(), options.material.source, options));
   }
   return 0;
 }
@@ -100,12 +122,18 @@ Command ExportCommand() {
   pbnbrdf export --fit=gold.safetensors --format=mitsuba --out=gold.py
   pbnbrdf export --material=builtin:satin-gold --format=merl --out=gold.binary
   pbnbrdf export --material=goniometer.csv --format=bsdf --out=gold.bsdf
+  pbnbrdf export --fit=gold.safetensors --format=gltf --out=gold.gltf
 )",
       .notes = StrCat(
-          R"(Formats; csv, bsdf and merl are of any source (--material), the others of networks (--fit):
+          R"(Formats; csv, bsdf, merl, gltf and materialx are of any source (--material), the others of
+networks (--fit):
 )",
           FormatsHelp(),
-          R"(wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear RGB in
+          R"(
+gltf and materialx hold a principled model: one that fit-model wrote, or the nearest to any other
+source. How far it is from that is printed, and said in the file.
+
+wi points to the light, wo to the viewer: unit vectors, the normal is +z. Values are linear RGB in
 1/sr, without the cosine (Mitsuba's own functions include it).
 
 )",

@@ -4,18 +4,14 @@
 
 #include "base/about.h"
 #include "command_line.h"
-#include "fit_record.h"
 #include "material_options.h"
+#include "model_fit.h"
 #include "models/fit_analytic_fields.h"
 #include "pbnbrdf/base/files.h"
-#include "pbnbrdf/problem/fit_problem.h"
 #include "problem/problem_fields.h"
 
 namespace pbnbrdf::cli {
 namespace {
-
-// Models have a few dozen parameters at most, networks hundreds: a tenth of the samples determines them.
-constexpr std::uint64_t kModelSamples = 6000;
 
 struct FitModelOptions {
   FitModelOptions() { sampling.samples = kModelSamples; }
@@ -61,8 +57,8 @@ Fields FitModelFields(FitModelOptions* options) {
   return fields.Add(SolutionFields(options));
 }
 
-Json FitJson(const FitModelOptions& options, const AnalyticFit& fit, std::size_t samples,
-             const Json& errors) {
+Json FitJson(const FitModelOptions& options, const ModelFit& model) {
+  const AnalyticFit& fit = model.fit;
   FitModelOptions copy = options;
   Json json = ParseJson(fit.brdf.Json());
   json["source"] = fit.brdf.Text();
@@ -72,14 +68,14 @@ Json FitJson(const FitModelOptions& options, const AnalyticFit& fit, std::size_t
   json["lobes"] = fit.brdf.lobes();
   json["seed"] = options.sampling.seed;
   json["sampling"] = NameOf(kSamplings, options.sampling.angles);
-  json["samples"] = samples;
+  json["samples"] = model.samples;
   json["loss_scale"] = options.fit.loss_scale;
   json["cost"] = fit.summary.final_cost;
   json["iterations"] = fit.summary.iterations;
   json["converged"] = fit.summary.converged;
   json["seconds"] = fit.summary.seconds;
   json["problem"] = SubjectFields(&copy).Lines() + SolutionFields(&copy).Lines();
-  json["errors"] = errors;
+  json["errors"] = model.errors;
   return json;
 }
 
@@ -89,20 +85,16 @@ int RunFitModel(const FitModelOptions& options, const Arguments&) {
   }
   CheckOutputs({{"out", options.out}});
   const std::unique_ptr<Brdf> material = options.material.Open();
-  std::vector<BrdfSample> samples;
-  const AnalyticFit fit = About(options.material.source, [&] {
-    samples = DrawSamples(*material, SampleSet::kTraining, options.sampling.angles,
-                          options.sampling.samples, options.sampling.seed);
-    return FitAnalytic(samples, material->IsIsotropic(), FindAnalyticModel(options.model),
-                       options.fit);
+  const ModelFit model = About(options.material.source, [&] {
+    return FitModel(*material, FindAnalyticModel(options.model), options.sampling, options.fit);
   });
-  const Json errors = MeasureFit(*material, fit.brdf, fit.brdf.parameters().size());
-  WriteFile(options.out, JsonText(FitJson(options, fit, samples.size(), errors)));
+  const AnalyticFit& fit = model.fit;
+  WriteFile(options.out, JsonText(FitJson(options, model)));
   if (!options.quiet && options.out != "-") {
     std::cout << options.out << ": " << fit.brdf.Description() << "; "
               << (fit.summary.converged ? "converged" : "stopped") << " after "
               << fit.summary.iterations << " iterations, " << fit.summary.seconds << " s\n"
-              << MeasuresText(errors);
+              << ErrorsText(model.errors);
   }
   return 0;
 }
@@ -110,12 +102,14 @@ int RunFitModel(const FitModelOptions& options, const Arguments&) {
 }  // namespace
 
 Command FitModelCommand() {
-  return Command{.name = "fit-model",
-                 .summary = "fits an analytic model to a material, to compare networks with",
-                 .usage = R"(  pbnbrdf fit-model --model=ggx --material=gold.binary --out=gold.json
+  return Command{
+      .name = "fit-model",
+      .summary = "fits an analytic model to a material, to compare networks with, or for artists",
+      .usage = R"(  pbnbrdf fit-model --model=ggx --material=gold.binary --out=gold.json
   pbnbrdf fit-model --model=ggx --lobes=2 --material=gold.binary --out=gold.json
+  pbnbrdf fit-model --model=principled --material=gold.binary --out=gold.json
 )",
-                 .notes = StrCat(kSourceNotes, R"(
+      .notes = StrCat(kSourceNotes, R"(
 The file holds the model, its parameters and its errors, and is itself a source of reflectance.
 pbnbrdf info models: explains the models.
 )")}

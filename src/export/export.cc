@@ -38,9 +38,14 @@ Files MitsubaFiles(const NeuralBrdf& network, const std::string& path, const std
   constexpr std::string_view kPython = ".py";
   if (!path.ends_with(kPython)) Fail(path, ": a Mitsuba plugin's name ends with ", kPython);
   const std::string base = path.substr(0, path.size() - kPython.size());
-  const std::string weights = base + "_weights.safetensors";
-  const std::string name = std::filesystem::path(weights).filename();
-  return {{weights, network.Serialized()}, {path, MitsubaPlugin(name, FitLobeProposal(network))}};
+  const std::string weights = base + "_weights.safetensors",
+                    proposal = base + "_proposal.safetensors";
+  const auto name = [](const std::string& file) {
+    return std::filesystem::path(file).filename().string();
+  };
+  return {{weights, network.Serialized()},
+          {proposal, MitsubaProposal(FitProposal(network))},
+          {path, MitsubaPlugin(name(weights), name(proposal))}};
 }
 
 bool IsNamedKeras(const std::string& path) {
@@ -75,41 +80,58 @@ Files OneFile(const NeuralBrdf& network, const std::string& path, const std::str
   }
 }
 
+// ... or of a principled model and an identifier.
+template <std::string (*content)(const AnalyticBrdf&, const std::string&)>
+Files OfPrincipled(const Brdf& source, const std::string& path, const std::string& identifier) {
+  const auto* model = dynamic_cast<const AnalyticBrdf*>(&source);
+  if (!model) Fail(path, ": this format holds principled models only, not ", source.Description());
+  return {{path, content(*model, identifier)}};
+}
+
 constexpr ExportFormat kFormats[] = {
     {"npy",
      "BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the network must "
      "have relu units, two hidden layers and the cartesian encoding",
-     false, OfNetwork<NpyFiles>},
+     ExportSource::kNetwork, OfNetwork<NpyFiles>},
     {"h5",
      "FILE.h5, a Keras file as NBRDF's are; the network must have relu units and the cartesian "
      "encoding",
-     false, OfNetwork<KerasFiles>},
+     ExportSource::kNetwork, OfNetwork<KerasFiles>},
     {"merl", "FILE.binary, a table in the format of the MERL BRDF database, of an isotropic source",
-     true, Table<MerlFile>},
+     ExportSource::kAny, Table<MerlFile>},
     {"bsdf",
      "FILE.bsdf, tables in the format of the RGL material database, which \"measured\" of "
      "Mitsuba 3 reads in its RGB variants",
-     true, Table<RglFile>},
-    {"bsdf_spectral", "the same with spectra, for Mitsuba's spectral variants and pbrt-v4", true,
-     Table<SpectralRglFile>},
+     ExportSource::kAny, Table<RglFile>},
+    {"bsdf_spectral", "the same with spectra, for Mitsuba's spectral variants and pbrt-v4",
+     ExportSource::kAny, Table<SpectralRglFile>},
     {"csv",
      "theta_i,phi_i,theta_o,phi_o (radians) and r,g,b on a grid of Rusinkiewicz angles that is "
      "dense near the mirror direction",
-     true, Table<CsvTable>},
+     ExportSource::kAny, Table<CsvTable>},
     {"c",
      "a C99 header with void NAME_eval(const float wi[3], const float wo[3], float rgb[3]); it "
      "needs <math.h> only",
-     false, OfNetwork<OneFile<CSource>>},
-    {"glsl", "vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later", false,
-     OfNetwork<OneFile<GlslSource>>},
+     ExportSource::kNetwork, OfNetwork<OneFile<CSource>>},
+    {"glsl", "vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later",
+     ExportSource::kNetwork, OfNetwork<OneFile<GlslSource>>},
+    {"hlsl", "float3 NAME_eval(float3 wi, float3 wo) for HLSL of shader model 5 or later, or Slang",
+     ExportSource::kNetwork, OfNetwork<OneFile<HlslSource>>},
+    {"wgsl", "fn NAME_eval(wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> for WGSL (WebGPU)",
+     ExportSource::kNetwork, OfNetwork<OneFile<WgslSource>>},
     {"mitsuba",
-     "FILE.py, which registers the BSDF \"pbnbrdf\" in Mitsuba 3, and FILE_weights.safetensors",
-     false, OfNetwork<MitsubaFiles>},
-    {"onnx", "a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32", false,
-     OfNetwork<OneFile<OnnxModel>>},
+     "FILE.py, which registers the BSDF \"pbnbrdf\" in Mitsuba 3, FILE_weights.safetensors and "
+     "FILE_proposal.safetensors, by which it draws directions",
+     ExportSource::kNetwork, OfNetwork<MitsubaFiles>},
+    {"onnx", "a model with inputs wi and wo (N x 3) and output rgb (N x 3), float32",
+     ExportSource::kNetwork, OfNetwork<OneFile<OnnxModel>>},
     {"torch",
-     "FILE.py with a torch.nn.Module, NAME: brdf(wi, wo), ... x 3 each, in double precision", false,
-     OfNetwork<OneFile<TorchModule>>},
+     "FILE.py with a torch.nn.Module, NAME: brdf(wi, wo), ... x 3 each, in double precision",
+     ExportSource::kNetwork, OfNetwork<OneFile<TorchModule>>},
+    {"gltf", "a material of glTF 2.0 with KHR extensions: the nearest principled model",
+     ExportSource::kPrincipled, OfPrincipled<GltfMaterial>},
+    {"materialx", "FILE.mtlx, a MaterialX document with a gltf_pbr shader: the same model",
+     ExportSource::kPrincipled, OfPrincipled<MaterialX>},
 };
 
 }  // namespace

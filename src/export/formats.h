@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pbnbrdf/brdf/importance_sampler.h"
+#include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
@@ -25,28 +26,34 @@ namespace pbnbrdf {
 // name: an identifier of C. Throws Error otherwise.
 std::string CSource(const NeuralBrdf& network, const std::string& name);
 
-// Functions for a shader of GLSL ES 3.00 (WebGL 2) or later, to be put after its #version line:
+// Functions for a shader, of which others may call
 //
-//   vec3 NAME_eval(vec3 wi, vec3 wo);
+//   vec3 NAME_eval(vec3 wi, vec3 wo);                              GLSL ES 3.00 (WebGL 2) or later
+//   float3 NAME_eval(float3 wi, float3 wo);                        HLSL of shader model 5 or later, Slang
+//   fn NAME_eval(wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32>        WGSL
 //
-// Directions and value as of CSource, in single precision (highp): about 1e-5 f + 1e-6 apart
-// from NeuralBrdf, with the merl encoding up to 1e-4 (1 + f). It uses no built-in
-// function but sqrt, abs, floor, min and max: the language allows an arc tangent to be off by 4096
-// units in the last place. Of a reciprocal encoding the value has the same bits if wi and wo are
-// exchanged.
+// Directions and value as of CSource, in single precision: about 1e-5 f + 1e-6 apart from NeuralBrdf, three times as
+// much where both directions are near the horizon, with the merl encoding up to 1e-4 (1 + f). They use no built-in function but sqrt, abs, sign, floor, min and max: the languages allow
+// an arc tangent to be off by 4096 units in the last place. Of a reciprocal encoding the value has the same bits if wi
+// and wo are exchanged.
 //
-// It makes highp the default precision, also for what follows it in the shader.
+// GLSL is to be put after its #version line, and makes highp the default precision, also for what follows it.
 //
-// name: an identifier of GLSL that doesn't begin with "gl_" nor has "__" in it. Throws Error
-// otherwise, or if a weight is beyond single precision.
+// name: an identifier of the language; of GLSL it doesn't begin with "gl_" nor has "__" in it, of WGSL NAME_eval
+// doesn't begin with "__". Throws Error otherwise, or if a weight is beyond single precision.
 std::string GlslSource(const NeuralBrdf& network, const std::string& name);
+std::string HlslSource(const NeuralBrdf& network, const std::string& name);
+std::string WgslSource(const NeuralBrdf& network, const std::string& name);
 
 // A Python file that registers the BSDF "pbnbrdf" in Mitsuba 3 [1] when it is imported after mitsuba.set_variant(),
-// for scalar, LLVM and CUDA variants in RGB or monochromatic mode. It needs nothing but Mitsuba. It
-// draws directions as ImportanceSampler does. A scene names another network by the parameter
-// "filename", and its proposal by "alpha_u", "alpha_v" and "lobe_weight"; without them it takes the
-// file `network` from beside itself, and the proposal given here.
-std::string MitsubaPlugin(const std::string& network, const LobeProposal& proposal);
+// for scalar, LLVM and CUDA variants in RGB, spectral or monochromatic mode. It needs nothing but Mitsuba. It draws
+// directions as ImportanceSampler does. It takes the files `network` and `proposal` (MitsubaProposal) from beside itself,
+// unless a scene names others.
+std::string MitsubaPlugin(const std::string& network, const std::string& proposal);
+
+// The bytes of a safetensors file: "cells" (azimuths x cosines x rings x sectors), "cosine_share" (azimuths x
+// cosines), "spread" (1).
+std::string MitsubaProposal(const Proposal& proposal);
 
 // The bytes of an ONNX model [2] of operator set 17, IR version 8: inputs "wi" and "wo" (N x 3, float32),
 // output "rgb" (N x 3, float32), directions and value as of CSource. It includes encoding,
@@ -69,6 +76,12 @@ std::string RglFile(const Brdf& source);
 
 // The same with spectra of 16 wavelengths, from 400 to 700 nm, that are seen as the source's colours (sources/cie.h).
 std::string SpectralRglFile(const Brdf& source);
+
+// A glTF 2.0 file of one material, with the KHR extensions that it needs, and a MaterialX document of one, a gltf_pbr
+// shader. Of a principled model (models/principled.h); its errors against the material it was fitted to are said in
+// extras.approximation or in comments. name: of the material; in MaterialX an identifier. Throws Error otherwise.
+std::string GltfMaterial(const AnalyticBrdf& principled, const std::string& name);
+std::string MaterialX(const AnalyticBrdf& principled, const std::string& name);
 
 // A CSV with the columns theta_i,phi_i,theta_o,phi_o (radians) and r,g,b (linear, 1/sr, without the
 // cosine), one header line. The grid is one of Rusinkiewicz angles:

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "export/formats.h"
+#include "export/primaries.h"
 #include "pbnbrdf/brdf/luminance.h"
-#include "sources/cie.h"
 #include "sources/rgl_square.h"
 #include "sources/tensor_writer.h"
 
@@ -26,10 +26,6 @@ constexpr int kPowerSteps = 6;
 constexpr double kEverywhere = 0.1;
 // The source is asked there for the node at 90 degrees.
 constexpr double kLastTheta = 89.0 * kPi / 180.0;
-// Spectra of what has a colour only, nm: three smooth bands that sum to 1.
-constexpr double kFirstWave = 400.0, kWaveStep = 20.0, kGreenFrom = 490.0, kRedFrom = 590.0,
-                 kSoft = 12.0;
-constexpr std::size_t kWaves = 16;
 
 double At(std::size_t k, std::size_t count) {
   return static_cast<double>(k) / static_cast<double>(count - 1);
@@ -180,41 +176,10 @@ void AddSlice(const Brdf& source, const Normals& normals, const Vec3& wi, Tables
   }
 }
 
-// x with x * columns = rgb, by Cramer's rule.
-Vec3 Solve(const Vec3 (&columns)[3], const Vec3& rgb) {
-  const Vec3 across = Cross(columns[1], columns[2]);
-  const double determinant = Dot(columns[0], across);
-  return {Dot(rgb, across) / determinant, Dot(columns[0], Cross(rgb, columns[2])) / determinant,
-          Dot(columns[0], Cross(columns[1], rgb)) / determinant};
-}
-
-// A reflectance at each wavelength for each of r, g, b; seen as cie.h says, it is that colour.
-std::vector<Vec3> SpectraOfPrimaries(const std::vector<float>& wavelengths) {
-  const std::vector<Rgb> seen = SpectrumToRgb(wavelengths);
-  std::vector<Vec3> bands;  // red, green, blue
-  Vec3 colors[3] = {};
-  for (std::size_t k = 0; k < wavelengths.size(); ++k) {
-    const auto above = [&](double edge) {
-      return 1.0 / (1.0 + std::exp((edge - wavelengths[k]) / kSoft));
-    };
-    const double red = above(kRedFrom), not_blue = above(kGreenFrom);
-    bands.push_back({red, not_blue - red, 1.0 - not_blue});
-    const Vec3 rgb = {seen[k][0], seen[k][1], seen[k][2]};
-    colors[0] = colors[0] + bands[k].x * rgb;
-    colors[1] = colors[1] + bands[k].y * rgb;
-    colors[2] = colors[2] + bands[k].z * rgb;
-  }
-  const Vec3 r = Solve(colors, {1, 0, 0}), g = Solve(colors, {0, 1, 0}),
-             b = Solve(colors, {0, 0, 1});
-  std::vector<Vec3> spectra;
-  for (const Vec3& band : bands) spectra.push_back({Dot(band, r), Dot(band, g), Dot(band, b)});
-  return spectra;
-}
-
 // [slices][wavelengths][kColors x kColors]
-std::vector<float> Spectra(const std::vector<float>& rgb, const std::vector<float>& wavelengths) {
+std::vector<float> Spectra(const std::vector<float>& rgb) {
   constexpr std::size_t kSize = kColors * kColors;
-  const std::vector<Vec3> primaries = SpectraOfPrimaries(wavelengths);
+  const std::vector<Vec3> primaries = SpectraOfPrimaries();
   std::vector<float> spectra;
   for (std::size_t first = 0; first < rgb.size(); first += 3 * kSize) {
     for (const Vec3& primary : primaries) {
@@ -267,14 +232,11 @@ std::string RglFile(const Brdf& source) {
 std::string SpectralRglFile(const Brdf& source) {
   const Normals normals(source);
   const Tables tables = TablesOf(source, normals);
-  std::vector<float> wavelengths;
-  for (std::size_t k = 0; k < kWaves; ++k) {
-    wavelengths.push_back(static_cast<float>(kFirstWave + kWaveStep * double(k)));
-  }
+  const std::vector<float> wavelengths = PrimaryWavelengths();
   return FileOf(source, normals, tables)
-      .AddFloats("wavelengths", {kWaves}, wavelengths)
-      .AddFloats("spectra", {tables.phi_i.size(), kThetaI, kWaves, kColors, kColors},
-                 Spectra(tables.rgb, wavelengths))
+      .AddFloats("wavelengths", {wavelengths.size()}, wavelengths)
+      .AddFloats("spectra", {tables.phi_i.size(), kThetaI, wavelengths.size(), kColors, kColors},
+                 Spectra(tables.rgb))
       .Bytes();
 }
 

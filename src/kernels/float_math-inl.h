@@ -89,17 +89,12 @@ HWY_INLINE V FastTanh(D d, V x) {
   return hn::CopySignToAbs(sum, x);
 }
 #else
-// Absolute error below 4e-7; odd, within [-1, 1], NaN for NaN. A minimax fit of x P(x^2) / Q(x^2) for
-// |x| < kMaxArgument; for larger |x| x^2 is clamped, and the ratio is clamped to 1.
+// Absolute error below 4e-7; odd, within [-1, 1], NaN for NaN.
 template <class D, class V>
 HWY_INLINE V FastTanh(D d, V x) {
-  constexpr float kMaxArgument = 8.5f;
-  constexpr float kP[] = {0.999999948f, 0.13406565f, 0.00352623816f, 2.11281991e-05f,
-                          1.41079876e-08f};
-  constexpr float kQ[] = {1.0f, 0.467398769f, 0.0259927478f, 0.00033363636f, 8.07728786e-07f};
-  const V x2 = hn::Min(hn::Set(d, kMaxArgument * kMaxArgument), hn::Mul(x, x));
-  const V p = hn::Mul(x, Polynomial(d, x2, kP));
-  const V q = Polynomial(d, x2, kQ);
+  const V x2 = hn::Min(hn::Set(d, kTanhMost * kTanhMost), hn::Mul(x, x));
+  const V p = hn::Mul(x, Polynomial(d, x2, kTanhNumerator));
+  const V q = Polynomial(d, x2, kTanhDenominator);
   const V ratio = hn::Div(p, q);
   const V clamped = hn::Min(hn::Set(d, 1.0f), hn::Max(hn::Set(d, -1.0f), ratio));
   return hn::IfThenElse(hn::IsNaN(x), x, clamped);

@@ -13,6 +13,14 @@ inline constexpr float kTwoAtanPolynomial[] = {1.999999972f,  -0.66666188f,   0.
                                                -0.284142672f, 0.213093548f,   -0.150673521f,
                                                0.0860787358f, -0.0325660162f, 0.0058071051f};
 
+// tanh(x) = x P(x^2) / Q(x^2) for |x| < kTanhMost, absolute error below 4e-7; for larger |x|, x^2 is clamped, and then
+// the ratio to 1.
+inline constexpr float kTanhMost = 8.5f;
+inline constexpr float kTanhNumerator[] = {0.999999948f, 0.13406565f, 0.00352623816f,
+                                           2.11281991e-05f, 1.41079876e-08f};
+inline constexpr float kTanhDenominator[] = {1.0f, 0.467398769f, 0.0259927478f, 0.00033363636f,
+                                             8.07728786e-07f};
+
 // log 2 = kLog2High + kLog2Low. The first has so few bits that its products with small integers are
 // exact.
 inline constexpr float kLog2High = 0.693359375f, kLog2Low = -2.12194440e-4f;

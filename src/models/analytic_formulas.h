@@ -5,6 +5,7 @@
 
 #include "models/facets.h"
 #include "models/lobes.h"
+#include "models/principled.h"
 
 namespace pbnbrdf {
 
@@ -12,7 +13,7 @@ using AnalyticFormulas =
     std::tuple<LambertFormula, OrenNayarFormula, PhongFormula, BlinnPhongFormula, LafortuneFormula,
                WardFormula<WardVariant::kOriginal>, WardFormula<WardVariant::kDuer>,
                WardFormula<WardVariant::kBounded>, CookTorranceFormula, GgxFormula, AbcFormula,
-               DisneyFormula>;
+               DisneyFormula, PrincipledFormula>;
 
 // f of the formula with `lobes` lobes, 1/sr; double parameters or Ceres' jets.
 template <typename Formula, typename T>

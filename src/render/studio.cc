@@ -3,7 +3,7 @@
 namespace pbnbrdf {
 
 Studio::Studio(const Scene& scene, const Brdf& material, int samples_per_pixel, int threads)
-    : scene_(scene), proposal_(FitLobeProposal(material)) {
+    : scene_(scene), proposal_(FitProposal(material)) {
   options_.samples_per_pixel = samples_per_pixel;
   options_.threads = threads;
 }

@@ -20,7 +20,7 @@ class Studio {
 
  private:
   const Scene& scene_;
-  LobeProposal proposal_;
+  Proposal proposal_;
   RenderOptions options_;
 };
 

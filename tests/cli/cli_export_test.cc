@@ -13,10 +13,21 @@ TEST_F(Cli, ExportWritesEveryFormat) {
                 kQuick + "--hidden=5,4 --out=" + network)
                 .status,
             0);
-  const std::map<std::string, std::string> files = {
-      {"npy", "x_fc1.npy"},        {"h5", "x.h5"},     {"merl", "x.binary"}, {"bsdf", "x.bsdf"},
-      {"bsdf_spectral", "y.bsdf"}, {"csv", "x.csv"},   {"c", "x.h"},         {"glsl", "x.glsl"},
-      {"mitsuba", "x.py"},         {"onnx", "x.onnx"}, {"torch", "y.py"}};
+  const std::map<std::string, std::string> files = {{"npy", "x_fc1.npy"},
+                                                    {"h5", "x.h5"},
+                                                    {"merl", "x.binary"},
+                                                    {"bsdf", "x.bsdf"},
+                                                    {"bsdf_spectral", "y.bsdf"},
+                                                    {"csv", "x.csv"},
+                                                    {"c", "x.h"},
+                                                    {"glsl", "x.glsl"},
+                                                    {"hlsl", "x.hlsl"},
+                                                    {"wgsl", "x.wgsl"},
+                                                    {"gltf", "x.gltf"},
+                                                    {"materialx", "x.mtlx"},
+                                                    {"mitsuba", "x.py"},
+                                                    {"onnx", "x.onnx"},
+                                                    {"torch", "y.py"}};
   const std::string help = Run("export --help").out;
   for (const auto& [format, file] : files) {
     EXPECT_THAT(help, HasSubstr("  " + format + " "));
@@ -25,7 +36,8 @@ TEST_F(Cli, ExportWritesEveryFormat) {
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_TRUE(std::filesystem::exists(Path(file))) << format;
   }
-  EXPECT_THAT(help, HasSubstr("npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl"));
+  EXPECT_THAT(help,
+              HasSubstr("npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl | hlsl | wgsl"));
   EXPECT_EQ(NeuralBrdf::Read(Path("x_weights.safetensors")).weights(),
             NeuralBrdf::Read(network).weights());
   // The CSV names the directions that its values are at; they alone are evaluated again.
@@ -60,7 +72,8 @@ TEST_F(Cli, ExportsThatCannotBeAreNamed) {
               "--format=c exports networks only: give one with --fit");
   ExpectError("export --fit=x --format=c", 2, "--out is required");
   ExpectError(to + " --format=obj", 2,
-              "--format=obj is not one of npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl");
+              "--format=obj is not one of npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl "
+              "| hlsl | wgsl");
   ExpectError(to + " --format=c --name=a-b", 1, "a.safetensors, exported as c: name=a-b is not");
   ExpectError("export --format=npy --fit=" + network + " --out=" + Path("x_fc1.npy"), 1,
               "a.safetensors, exported as npy: an NBRDF network has relu units and the cartesian "

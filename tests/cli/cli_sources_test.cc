@@ -94,6 +94,7 @@ TEST_F(CliSources, AModelFitIsASourceAndAFit) {
   EXPECT_EQ(fit.err, "");
   EXPECT_THAT(fit.out, HasSubstr("a.json: ggx:rho_d="));
   EXPECT_THAT(fit.out, HasSubstr("mean_abs_log_error"));
+  EXPECT_THAT(fit.out, Not(HasSubstr("not reciprocal")));
   const json file = json::parse(ReadFile(Path("a.json"), 1 << 20));
   EXPECT_EQ(file["model"], "ggx");
   EXPECT_EQ(file["seed"], 4);
@@ -132,8 +133,9 @@ TEST_F(CliSources, AModelFitIsASourceAndAFit) {
 
 TEST_F(CliSources, EveryModelFits) {
   const std::string listed = Run("info models:").out, help = Run("fit-model --help").out;
-  for (const char* model : {"lambert", "oren_nayar", "phong", "blinn_phong", "lafortune", "ward",
-                            "ward_duer", "ward_bounded", "cook_torrance", "ggx", "abc", "disney"}) {
+  for (const char* model :
+       {"lambert", "oren_nayar", "phong", "blinn_phong", "lafortune", "ward", "ward_duer",
+        "ward_bounded", "cook_torrance", "ggx", "abc", "disney", "principled"}) {
     EXPECT_THAT(listed, HasSubstr(StrCat("\n", model, ": (")));
     EXPECT_THAT(help, HasSubstr(StrCat(" ", model)));
     const std::string out = Path(StrCat(model, ".json"));

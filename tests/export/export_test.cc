@@ -1,6 +1,7 @@
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/sources/open_brdf.h"
 
+#include "export/formats.h"
 #include "export/networks.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/nbrdf_files.h"
@@ -8,7 +9,9 @@
 namespace pbnbrdf {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 NeuralBrdf Relu(std::vector<int> hidden = {7, 5}) {
@@ -78,6 +81,7 @@ TEST(Export, MerlIsWhatTabulateWrites) {
 
 TEST(Export, TheSameNetworkGivesTheSameBytes) {
   for (const ExportFormat& exported : ExportFormats()) {
+    if (exported.source == ExportSource::kPrincipled) continue;
     const std::string_view format = exported.name;
     const std::string path = format == "npy"       ? "fc1.npy"
                              : format == "h5"      ? "a.h5"
@@ -103,15 +107,33 @@ TEST(Export, FunctionsAreNamedAsTheFileOrAsAsked) {
   EXPECT_THAT(ErrorOf([&] { text("3.h", ""); }), HasSubstr("name=3 is not a letter"));
 }
 
+TEST(Export, ArtistsGetPrincipledModelsOnly) {
+  const AnalyticBrdf cloth = AnalyticBrdf::FromText("principled:sheen_color=0.5,roughness=0.75");
+  EXPECT_THAT(ExportedFiles(cloth, "gltf", "x/a.gltf")[0].content,
+              AllOf(HasSubstr("\"name\": \"a\""), HasSubstr("\"roughnessFactor\": 0.75"),
+                    HasSubstr("KHR_materials_sheen"), Not(HasSubstr("extras"))));
+  AnalyticBrdf remarked = cloth;
+  remarked.set_metadata({{"material", "a --> <b>"}, {"errors", R"({"mean_abs_log_error": 0.25})"}});
+  const std::string document = ExportedFiles(remarked, "materialx", "x/a.mtlx")[0].content;
+  EXPECT_THAT(document, AllOf(HasSubstr("<!-- material: a - -&gt; &lt;b&gt; -->"),
+                              HasSubstr("<!-- mean_abs_log_error: 0.25 -->"),
+                              HasSubstr("name=\"sheen_roughness\" type=\"float\" value=\"0.5\"")));
+  const auto error = [](const Brdf& source) {
+    return ErrorOf([&] { ExportedFiles(source, "gltf", "x/a.gltf"); });
+  };
+  EXPECT_THAT(error(Merl()), HasSubstr("x/a.gltf: this format holds principled models only"));
+  EXPECT_THAT(error(LambertBrdf({1, 1, 1})), HasSubstr("needs a principled model, not lambert"));
+}
+
 TEST(Export, MitsubaGetsItsWeightsBeside) {
   const auto files = ExportedFiles(Merl(), "mitsuba", "x/gold \"2\".py");
-  ASSERT_EQ(files.size(), 2u);
+  ASSERT_EQ(files.size(), 3u);
   EXPECT_EQ(files[0].path, "x/gold \"2\"_weights.safetensors");
   EXPECT_EQ(files[0].content, Merl().Serialized());
-  EXPECT_THAT(files[1].content, HasSubstr("b\"gold \\x222\\x22_weights.safetensors\""));
-  for (const char* unset : {"\nALPHA_U = 0.5\n", "\nALPHA_V = 0.5\n", "\nLOBE_WEIGHT = 0.5\n"}) {
-    EXPECT_THAT(files[1].content, testing::Not(HasSubstr(unset)));
-  }
+  EXPECT_EQ(files[1].path, "x/gold \"2\"_proposal.safetensors");
+  EXPECT_EQ(files[1].content, MitsubaProposal(FitProposal(Merl())));
+  EXPECT_THAT(files[2].content, HasSubstr("b\"gold \\x222\\x22_weights.safetensors\""));
+  EXPECT_THAT(files[2].content, HasSubstr("b\"gold \\x222\\x22_proposal.safetensors\""));
 }
 
 TEST(Export, WhatAFormatCannotHoldIsSaid) {

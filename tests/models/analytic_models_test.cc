@@ -32,7 +32,10 @@ const char* const kTexts[] = {
     "ggx:rho_d=0.2,f0=0.9/0.5/0.04,alpha_x=0.05,alpha_y=0.3,alpha_2=0.4,f0_2=0.1",
     "abc:rho_d=0.2,rho_s=3,f0=0.5,b=1e4,c=1.5,rho_s_2=1,b_2=10,c_2=0.5",
     "disney:base_color=0.8/0.4/0.1,metallic=0.3,subsurface=0.4,specular=0.7,specular_tint=0.3,"
-    "roughness=0.4,anisotropic=0.6,sheen=0.5,sheen_tint=0.4,clearcoat=0.7,clearcoat_gloss=0.8"};
+    "roughness=0.4,anisotropic=0.6,sheen=0.5,sheen_tint=0.4,clearcoat=0.7,clearcoat_gloss=0.8",
+    "principled:base_color=0.8/0.4/0.1,metallic=0.3,roughness=0.4,anisotropy=0.6,specular=0.7,"
+    "specular_color=1.5/1/0.5,coat=0.6,coat_roughness=0.2,sheen_color=0.5/0.3/"
+    "0.1,sheen_roughness=0.4"};
 
 TEST(AnalyticModels, EachIsTestedHere) {
   std::vector<std::string> tested, known;
@@ -75,7 +78,7 @@ TEST(AnalyticModels, AreIsotropicOrNotAsTheySay) {
       ++anisotropic;
     }
   }
-  EXPECT_EQ(anisotropic, 7);
+  EXPECT_EQ(anisotropic, 8);
 }
 
 TEST(AnalyticModels, LobesAddUp) {
@@ -307,6 +310,50 @@ TEST(Disney, SheenIsThereAtGrazingAnglesOnly) {
   const DirectionPair grazing = {FromSpherical(1.5, 0.0), FromSpherical(1.5, kPi)};
   const double schlick = std::pow(1.0 - std::cos(1.5), 5);
   EXPECT_NEAR(RedAt(cloth + "1", grazing) - RedAt(cloth + "0", grazing), schlick, 1e-9);
+}
+
+TEST(Principled, MetalIsGgx) {
+  for (const DirectionPair& pair : RandomPairs(300, /*seed=*/19)) {
+    // alpha_y = roughness^2, alpha_x = alpha_y + (1 - alpha_y) anisotropy^2.
+    const double f = RedAt("ggx:f0=0.7,alpha_x=0.4375,alpha_y=0.25", pair);
+    EXPECT_NEAR(RedAt("principled:base_color=0.7,metallic=1,roughness=0.5,anisotropy=0.5", pair), f,
+                1e-11 * f);
+  }
+}
+
+TEST(Principled, DielectricIsDiffuseUnderItsFacets) {
+  for (const DirectionPair& pair : RandomPairs(300, /*seed=*/20)) {
+    EXPECT_NEAR(RedAt("principled:base_color=0.6,specular=0", pair), 0.6 / kPi, 1e-12);
+    const double facets = RedAt("ggx:f0=0.06,alpha=0.25", pair);
+    const double fresnel = SchlickFresnel(0.06, ReflectionGeometry(pair).cos_d);
+    EXPECT_NEAR(
+        RedAt("principled:base_color=0.6,roughness=0.5,specular=0.5,specular_color=1.5", pair),
+        0.6 / kPi * (1.0 - 0.5 * fresnel) + 0.5 * facets, 1e-11);
+  }
+}
+
+TEST(Principled, CoatTakesWhatItReflectsFromWhatIsUnder) {
+  for (const DirectionPair& pair : RandomPairs(300, /*seed=*/21)) {
+    const double fresnel = SchlickFresnel(0.04, ReflectionGeometry(pair).cos_d);
+    const double coat = RedAt("ggx:f0=0.04,alpha=0.04", pair);
+    EXPECT_NEAR(RedAt("principled:base_color=0.6,specular=0,coat=0.5,coat_roughness=0.2", pair),
+                0.6 / kPi * (1.0 - 0.5 * fresnel) + 0.5 * coat, 1e-11);
+  }
+}
+
+TEST(Principled, SheenKeepsTheEnergyOfAWhiteBase) {
+  for (const char* roughness : {"0", "0.3", "0.6", "1"}) {
+    for (double theta : {0.0, 0.8, 1.4}) {
+      const std::string text = "principled:base_color=1,specular=0,sheen_roughness=";
+      const double albedo = Albedo(StrCat(text, roughness, ",sheen_color=1"), theta);
+      EXPECT_LT(albedo, 1.005) << roughness << " " << theta;
+      EXPECT_GT(albedo, 0.5) << roughness << " " << theta;
+    }
+  }
+  const DirectionPair grazing = {FromSpherical(1.4, 0.0), FromSpherical(1.4, kPi / 2)};
+  const std::string cloth = "principled:base_color=0,specular=0,sheen_color=";
+  EXPECT_EQ(RedAt(cloth + "0", grazing), 0.0);
+  EXPECT_GT(RedAt(cloth + "1", grazing), 0.1);
 }
 
 }  // namespace

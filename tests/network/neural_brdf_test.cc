@@ -176,6 +176,7 @@ TEST(NeuralBrdf, AnImportanceSamplerEstimatesItsAlbedo) {
     network.Evaluate(pairs, values);
     Rgb albedo = {};
     for (std::size_t n = 0; n < kCount; ++n) {
+      if (pdf[n] == 0.0) continue;
       for (int c = 0; c < 3; ++c) albedo[c] += values[n][c] * wo[n].z / pdf[n] / kCount;
     }
     const Rgb exact = DirectionalAlbedo(network, wi);

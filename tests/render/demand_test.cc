@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pbnbrdf/models/analytic.h"
 #include "render/render_test_util.h"
 
 namespace pbnbrdf {
@@ -30,7 +31,8 @@ class GrownBrdf final : public PointwiseBrdf {
 };
 
 OpenedMaterial OpenUnchanged(const std::string& source) {
-  return {OpenTestMaterial(source), LobeProposal{.alpha = 0.4, .lobe_weight = 0.5}};
+  static const Proposal proposal = FitProposal(GgxBrdf({0.5, 0.5, 0.5}, 0.4));
+  return {OpenTestMaterial(source), proposal};
 }
 
 double MeanLuminance(const Image& image) {

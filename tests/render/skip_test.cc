@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/parallel.h"
+#include "pbnbrdf/models/analytic.h"
 #include "render/render_test_util.h"
 
 namespace pbnbrdf {
@@ -21,7 +22,8 @@ constexpr std::array kEveryEstimator = {Estimator::kMis, Estimator::kBrdf, Estim
 
 // Gives a proposal: fitting one takes longer than these renders.
 OpenedMaterial OpenQuickly(const std::string& source) {
-  return {OpenTestMaterial(source), LobeProposal{.alpha = 0.3, .lobe_weight = 0.6}};
+  static const Proposal proposal = FitProposal(GgxBrdf({0.5, 0.5, 0.5}, 0.3));
+  return {OpenTestMaterial(source), proposal};
 }
 
 // Expects the same image with skip and without, and counts that agree. Returns the work with skip.
@@ -223,7 +225,9 @@ TEST(Skip, OpenersMayWorkInParallel) {
   scene.film = {256, 256};
   tbb::task_arena arena(kThreads);
   for (int repeat = 0; repeat < 10; ++repeat) {
-    const auto render = [&] { return Render(scene, open, {.samples_per_pixel = 1}); };
+    const auto render = [&] {
+      return Render(scene, open, {.samples_per_pixel = 1, .max_bounces = 1});
+    };
     EXPECT_EQ(arena.execute(render).summary.work.materials.done, 5);
   }
 }
@@ -234,13 +238,13 @@ TEST(Skip, AProposalGivenIsUsed) {
   Image map(2, 1);
   map.rgb = {1, 2, 3, 4, 5, 6};
   scene.environment = EnvironmentMap(map, 0.0, 1.0);
-  const auto render = [&](double rho, const std::optional<LobeProposal>& proposal) {
+  const auto render = [&](double rho, const std::optional<Proposal>& proposal) {
     const auto open = [&](const std::string&) {
       return OpenedMaterial{OpenTestMaterial(StrCat("white:", rho)), proposal};
     };
     return Render(scene, open, {.samples_per_pixel = 8}).image.rgb;
   };
-  const LobeProposal narrow = {.alpha = 0.1, .lobe_weight = 0.5};
+  const Proposal narrow = FitProposal(GgxBrdf({0.5, 0.5, 0.5}, 0.1));
   std::vector<float> half = render(0.25, narrow);
   for (float& value : half) value *= 2.0f;
   EXPECT_EQ(render(0.5, narrow), half);  // the very same paths

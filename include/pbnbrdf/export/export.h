@@ -12,23 +12,29 @@
 
 namespace pbnbrdf {
 
+// What a format holds.
+enum class ExportSource {
+  kNetwork,     // a NeuralBrdf
+  kAny,         // a table of any source
+  kPrincipled,  // an AnalyticBrdf of the principled model
+};
+
 // One of the formats, by its name.
 struct ExportFormat {
   std::string_view name;
   std::string_view help;  // what is written
-  bool takes_any_source;  // else networks only
+  ExportSource source;
   std::vector<FileContent> (*files)(const Brdf& source, const std::string& path,
                                     const std::string& identifier);
 };
 
 std::span<const ExportFormat> ExportFormats();
 
-// The file, or files, of which `path` names the main one: NumPy's are ...fc1.npy and five beside
-// it, the plugin for Mitsuba ....py and its weights, ..._weights.safetensors. name: how the
-// functions of source code are called; empty: as the file is, up to its first dot, with characters
-// that an identifier can't have replaced by '_'. Throws Error if the format can't hold this
-// source, if a name isn't what the format needs, or if there is no such format. The same source gives
-// the same bytes.
+// The file, or files, of which `path` names the main one: NumPy's are ...fc1.npy and five beside it, the plugin
+// for Mitsuba ....py and what it reads, ..._weights.safetensors and ..._proposal.safetensors. name: how functions of
+// source code, or materials, are called; empty: as the file is, up to its first dot, with characters that an
+// identifier can't have replaced by '_'. Throws Error if the format can't hold this source, if a name isn't what the
+// format needs, or if there is no such format. The same source gives the same bytes.
 std::vector<FileContent> ExportedFiles(const Brdf& source, std::string_view format,
                                        const std::string& path, const std::string& name = "");
 

@@ -67,6 +67,7 @@ class AnalyticBrdf : public PointwiseBrdf {
   std::string Json() const;
 
   bool IsIsotropic() const override;
+  bool IsReciprocal() const override { return true; }
   std::string Description() const override;
 
   // Every parameter with its value; FromValues and FromText make the same Brdf of them.
@@ -77,6 +78,7 @@ class AnalyticBrdf : public PointwiseBrdf {
   int lobes() const { return lobes_; }
   const std::vector<double>& parameters() const { return parameters_; }
   const Metadata& metadata() const { return metadata_; }
+  void set_metadata(Metadata metadata) { metadata_ = std::move(metadata); }
 
  protected:
   Rgb Value(const DirectionPair& pair) const override;

@@ -37,7 +37,7 @@ struct OpenedMaterial {
   // The density that directions are drawn with; fitted to the BRDF if absent. Materials with the same
   // proposal send paths in the same directions, until Russian roulette ends some: their images have
   // the same noise, and can be compared.
-  std::optional<LobeProposal> proposal = {};
+  std::optional<Proposal> proposal = {};
 };
 
 // Opens the material that a SceneMaterial's source names; throws Error. Called when the first path hits

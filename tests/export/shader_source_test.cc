@@ -1,4 +1,4 @@
-// The exported shader code, run by OpenGL ES 3 without a window.
+// The exported GLSL, run by OpenGL ES 3 without a window; names of all three languages.
 #include "export/formats.h"
 
 #include <EGL/egl.h>
@@ -192,11 +192,15 @@ TEST(GlslSource, IsReciprocalToTheBit) {
   }
 }
 
-TEST(GlslSource, NamesThatGlslReservesAreRefused) {
+TEST(GlslSource, NamesThatLanguagesReserveAreRefused) {
   const NeuralBrdf network = RandomNetwork(Encoding::kMerl, Activation::kTanh, {2}, 1);
   for (const char* name : {"gl_gold", "gold__paint", "gold_"}) {
     EXPECT_THAT(ErrorOf([&] { GlslSource(network, name); }), HasSubstr("is reserved in GLSL"));
   }
+  for (const char* name : {"_", "__gold"}) {
+    EXPECT_THAT(ErrorOf([&] { WgslSource(network, name); }), HasSubstr("is reserved in WGSL"));
+  }
+  EXPECT_THAT(HlslSource(network, "gl_gold__"), HasSubstr("float3 gl_gold___eval("));
   std::vector<double> weights = network.weights();
   weights[3] = 1e39;
   EXPECT_THAT(ErrorOf([&] { GlslSource(NeuralBrdf(network.shape(), weights), "gold"); }),
