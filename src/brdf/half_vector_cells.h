@@ -51,6 +51,14 @@ class HalfVectorCells {
   double turn_;  // that all sectors cover
 };
 
+// 1 - cos_h, with the digits of narrow lobes.
+inline double OneMinusCosine(const Vec3& h) { return (h.x * h.x + h.y * h.y) / (1.0 + h.z); }
+
+// The vector of the frame that has this x axis, in that of the material.
+inline Vec3 FromFrame(const Vec3& axis, const Vec3& v) {
+  return {axis.x * v.x - axis.y * v.y, axis.y * v.x + axis.x * v.y, v.z};
+}
+
 // The reflection of wi on h.
 inline Vec3 Reflected(const Vec3& wi, const Vec3& h) { return 2.0 * Dot(wi, h) * h - wi; }
 

@@ -46,7 +46,7 @@ class IncidentAround {
       return;
     }
     // Azimuths repeat after half a turn.
-    double turns = std::atan2(wi.y, wi.x) / kPi;
+    const double turns = std::atan2(wi.y, wi.x) / kPi;
     const double position = (turns < 0.0 ? turns + 2.0 : turns) * p.azimuths - 0.5;
     const int first = static_cast<int>(std::floor(position));
     for (int k : {0, 1}) {
@@ -157,8 +157,7 @@ Vec3 ImportanceSampler::Draw(const Vec3& wi, std::array<double, 2> u) const {
   const HalfVectorCells cells(p);
   Vec3 h = cells.At((ring + u[1]) / p.rings, (cell % p.sectors + inside) / p.sectors);
   if (other_side) h = p.IsIsotropic() ? Vec3{h.x, -h.y, h.z} : Vec3{-h.x, -h.y, h.z};
-  const Vec3 axis = HalfVectorCells::Axis(p, wi);
-  return Reflected(wi, {axis.x * h.x - axis.y * h.y, axis.y * h.x + axis.x * h.y, h.z});
+  return Reflected(wi, FromFrame(HalfVectorCells::Axis(p, wi), h));
 }
 
 double ImportanceSampler::Density(const DirectionPair& pair) const {
@@ -166,10 +165,11 @@ double ImportanceSampler::Density(const DirectionPair& pair) const {
   const Proposal& p = proposal_;
   const Vec3 sum = pair.wi + pair.wo;
   const Vec3 h = (1.0 / Length(sum)) * sum;
-  const double depth = (h.x * h.x + h.y * h.y) / (1.0 + h.z);  // 1 - cos_h
+  const double depth = OneMinusCosine(h);
   const Vec3 axis = HalfVectorCells::Axis(p, pair.wi);
+  const Vec3 in_frame = FromFrame({axis.x, -axis.y, 0.0}, h);
   const HalfVectorCells cells(p);
-  const double v = cells.V(axis.x * h.x + axis.y * h.y, axis.x * h.y - axis.y * h.x);
+  const double v = cells.V(in_frame.x, in_frame.y);
   const int ring = std::min(static_cast<int>(cells.U(depth) * p.rings), p.rings - 1);
   const int sector = std::min(static_cast<int>(v * p.sectors), p.sectors - 1);
 

@@ -61,8 +61,7 @@ double Spread(const Brdf& brdf, int azimuths) {
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         const double share = sums[n] / albedo;
         const Vec3 sum = wi + pairs[n].wo;
-        const double xy2 = (sum.x * sum.x + sum.y * sum.y) / Dot(sum, sum);
-        depths.emplace_back(xy2 / (1.0 + sum.z / Length(sum)),
+        depths.emplace_back(OneMinusCosine((1.0 / Length(sum)) * sum),
                             nodes[n].weight * pairs[n].wo.z * share * share);
       }
     }
@@ -117,9 +116,7 @@ Table Tabulate(const Brdf& brdf, const Proposal& p, const Vec3& wi) {
     const int cell = static_cast<int>(n / (kInside * kInside)), inside = n % (kInside * kInside);
     const double u = (cell / p.sectors + (inside / kInside + 0.5) / kInside) / p.rings;
     const double v = (cell % p.sectors + (inside % kInside + 0.5) / kInside) / p.sectors;
-    const Vec3 in_frame = cells.At(u, v);
-    const Vec3 h = {axis.x * in_frame.x - axis.y * in_frame.y,
-                    axis.y * in_frame.x + axis.x * in_frame.y, in_frame.z};
+    const Vec3 h = FromFrame(axis, cells.At(u, v));
     const double cos_d = Dot(wi, h);
     if (!(cos_d > 0.0)) continue;
     table.visible[n] = cos_d / cells.Density(1.0 - h.z);

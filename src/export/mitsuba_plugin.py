@@ -60,7 +60,7 @@ def polynomial(x, coefficients):
 
 
 def tanh(x):
-    """Error below 4e-7, in a third of the time of dr.tanh."""
+    """Error below 4e-7; cheaper than dr.tanh."""
     x2 = dr.minimum(x * x, @tanh_most@)
     ratio = x * polynomial(x2, @tanh_numerator@) / polynomial(x2, @tanh_denominator@)
     return dr.clip(ratio, -1.0, 1.0)

@@ -143,11 +143,11 @@ class OverHalfVectors {
       const double phi = kPi * (2.0 * t - 1.0);
       Vec3 h = cells_.At(s, cells_.V(std::cos(phi), std::sin(phi)));
       const double sine = std::hypot(h.x, h.y);
-      h = Turned({sine * std::cos(phi), sine * std::sin(phi), h.z}, axis_.y);
+      h = FromFrame(axis_, {sine * std::cos(phi), sine * std::sin(phi), h.z});
       const double cos_d = Dot(wi_, h);
       const Vec3 wo = Reflected(wi_, h);
       if (cos_d <= 0.0 || wo.z <= 0.0) return 0.0;
-      return PdfAt(sampler_, {wi_, wo}) * 4.0 * cos_d / cells_.Density(Depth(h));
+      return PdfAt(sampler_, {wi_, wo}) * 4.0 * cos_d / cells_.Density(OneMinusCosine(h));
     });
   }
 
@@ -156,20 +156,14 @@ class OverHalfVectors {
     for (std::size_t n = 0; n < draws.wo.size(); ++n) {
       if (draws.pdf[n] == 0.0) continue;
       const Vec3 sum = wi_ + draws.wo[n];
-      const Vec3 h = Turned((1.0 / Length(sum)) * sum, -axis_.y);
-      ++counts[Histogram::Cell(cells_.U(Depth(h)), 0.5 + std::atan2(h.y, h.x) / (2.0 * kPi))];
+      const Vec3 h = FromFrame({axis_.x, -axis_.y, 0.0}, (1.0 / Length(sum)) * sum);
+      ++counts[Histogram::Cell(cells_.U(OneMinusCosine(h)),
+                               0.5 + std::atan2(h.y, h.x) / (2.0 * kPi))];
     }
     return counts;
   }
 
  private:
-  static double Depth(const Vec3& h) { return (h.x * h.x + h.y * h.y) / (1.0 + h.z); }
-
-  // About the normal; cosine: that of axis_.
-  Vec3 Turned(const Vec3& v, double sine) const {
-    return {axis_.x * v.x - sine * v.y, sine * v.x + axis_.x * v.y, v.z};
-  }
-
   const ImportanceSampler& sampler_;
   Vec3 wi_;
   HalfVectorCells cells_;
