@@ -52,7 +52,7 @@ def _pairs(wi: ArrayLike, wo: ArrayLike) -> tuple[NDArray[Any], NDArray[Any], tu
 
 
 class Sampler:
-    """Draws directions in proportion to what a material reflects: one GGX lobe and a cosine, fitted to it."""
+    """Draws directions in proportion to what a material reflects: by tables of half vectors, and by the cosine."""
 
     def __init__(self, brdf: Brdf) -> None:
         self._sampler = _pbnbrdf.Sampler(brdf._brdf)

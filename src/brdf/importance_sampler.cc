@@ -136,7 +136,7 @@ void ImportanceSampler::FillAliases(std::span<const float> cells, std::span<Alia
 
 Vec3 ImportanceSampler::Draw(const Vec3& wi, std::array<double, 2> u) const {
   const Proposal& p = proposal_;
-  Incident chosen;
+  Incident chosen = {};
   double rest = 1.0;
   for (const Incident& incident : IncidentAround(p, wi)) {
     chosen = incident;

@@ -77,6 +77,18 @@ std::vector<Entry> EntriesOf(const std::string& text) {
   return entries;
 }
 
+// Those that have one of the names between semicolons. Throws Error, which has the name, if there is no such entry.
+std::vector<Entry> Chosen(const std::vector<Entry>& entries, const std::string& names) {
+  std::vector<Entry> chosen;
+  for (const std::string& name : Split(names, ';')) {
+    const auto found = std::find_if(entries.begin(), entries.end(),
+                                    [&](const Entry& entry) { return entry.name == name; });
+    if (found == entries.end()) Fail("only: no material is named '", name, "'");
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
 // A field of CSV, in quotes if need be.
 std::string CsvField(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -93,7 +105,9 @@ std::string CsvField(const Json& value) {
 class Collection {
  public:
   Collection(const FitRequest& request, const CollectionOptions& options)
-      : request_(request), options_(options), entries_(EntriesOf(request.material.source)) {}
+      : request_(request), options_(options), entries_(EntriesOf(request.material.source)) {
+    if (!options.only.empty()) entries_ = Chosen(entries_, options.only);
+  }
 
   int Run() {
     std::error_code code;
@@ -102,6 +116,7 @@ class Collection {
     RemovePartialFiles(options_.out_dir);
     RunJobs();
     line_.Clear();
+    if (!options_.only.empty()) return Conclude();
     WriteTable();
     if (options_.when_done && !Interrupted()) options_.when_done();
     return Conclude();
@@ -251,9 +266,16 @@ class Collection {
     if (Interrupted()) Fail("interrupted; ", Waiting(), " wait: the same command goes on");
     if (counts_[State::kFailed] > 0) {
       Fail(counts_[State::kFailed], " of ", entries_.size(), " materials failed; ",
-           File(kTable, ".csv"), " says why");
+           options_.only.empty() ? File(kTable, ".csv") + " says why" : FirstFailure());
     }
     return 0;
+  }
+
+  std::string FirstFailure() const {
+    const auto failed = std::find_if(entries_.begin(), entries_.end(), [](const Entry& entry) {
+      return entry.state == State::kFailed;
+    });
+    return StrCat(failed->name, ": ", failed->why);
   }
 
   const FitRequest& request_;
@@ -271,6 +293,12 @@ class Collection {
 
 int FitCollection(const FitRequest& request, const CollectionOptions& options) {
   return Collection(request, options).Run();
+}
+
+std::vector<std::string> CollectionNames(const std::string& source) {
+  std::vector<std::string> names;
+  for (const Entry& entry : EntriesOf(source)) names.push_back(entry.name);
+  return names;
 }
 
 }  // namespace pbnbrdf::cli

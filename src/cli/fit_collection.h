@@ -12,7 +12,8 @@ inline constexpr NameTable<ProgressStyle, 2> kProgressStyles = {
 
 struct CollectionOptions {
   std::string out_dir;
-  int jobs = 0;  // fits at a time; 0: one for each core
+  std::string only;  // names of materials, between semicolons; "": all
+  int jobs = 0;      // fits at a time; 0: one for each core
   ProgressStyle progress = ProgressStyle::kTerminal;
   bool quiet = false;
   std::function<void()> when_done = {};  // all fits that can be made are, and the table is written
@@ -25,7 +26,11 @@ struct CollectionOptions {
 //
 // Fits that the folder has are kept if material, problem and version are the same. A material that fails is
 // recorded, and the others go on. Whenever the program is killed, the same call goes on where it was. Returns the
-// exit status: 1 if a material failed or Ctrl-C ended it early.
+// exit status: 1 if a material failed or Ctrl-C ended it early. With options.only several processes, also of several
+// machines, fill one folder, and none writes the table: a call without it does, once they are done.
 int FitCollection(const FitRequest& request, const CollectionOptions& options);
+
+// The names of the materials of the collection, in order.
+std::vector<std::string> CollectionNames(const std::string& source);
 
 }  // namespace pbnbrdf::cli

@@ -22,6 +22,7 @@ struct FitCommandOptions {
   std::string out, summary, trace;
   CollectionOptions collection;
   bool report = false;  // with --out_dir
+  bool list = false;    // with --out_dir
 };
 
 Fields FitCommandFields(FitCommandOptions* options) {
@@ -36,6 +37,12 @@ Fields FitCommandFields(FitCommandOptions* options) {
                      "threads to use; 0: one for each core"));
   fields.AddCommon(Integer("jobs", &options->collection.jobs, AtLeast(0),
                            "with --out_dir: fits at a time; 0: one for each core"));
+  fields.Add(Switch("list", &options->list,
+                    "with --out_dir: print the materials' names, a line each, and end"));
+  fields.Add(
+      Text("only", &options->collection.only,
+           "with --out_dir: names of materials, between semicolons, to fit these alone; a run "
+           "without it makes the table"));
   fields.Add(Choice("progress", &options->collection.progress, kProgressStyles,
                     "with --out_dir: how progress is told, on standard error"));
 #ifdef PBNBRDF_HAS_RENDER
@@ -113,6 +120,12 @@ int FitOne(const FitCommandOptions& options) {
 }
 
 int FitMany(const FitCommandOptions& options) {
+  if (options.list) {
+    for (const std::string& name : CollectionNames(options.request.material.source)) {
+      std::cout << name << "\n";
+    }
+    return 0;
+  }
   CollectionOptions collection = options.collection;
 #ifdef PBNBRDF_HAS_RENDER
   if (options.report) {
@@ -139,6 +152,9 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
   if (out_dir.empty() && options.report) {
     throw UsageError("--report is for --out_dir; pbnbrdf report makes the page of one fit");
   }
+  if (out_dir.empty() && (options.list || !options.collection.only.empty())) {
+    throw UsageError("--list and --only are for --out_dir");
+  }
   CatchInterrupt();
   return out_dir.empty() ? FitOne(options) : FitMany(options);
 }
@@ -160,7 +176,8 @@ With --out_dir, --material is a pattern, or several separated by semicolons: 'me
 'sgd:parameters.csv#*', 'builtin:*'. OUT_DIR gets NAME.safetensors and NAME.json of each material, a
 table of all, fits.csv and fits.json, and with --report a page, fits.html. Fits that it has are kept
 where material, problem and version are the same, so that a run that was ended goes on. A material
-that fails doesn't stop the others.
+that fails doesn't stop the others. On a cluster each job fits one material, by --only, and a last
+run makes the table: experiments/cluster has a workflow of Snakemake.
 )")}
       .With(FitCommandFields, RunFit);
 }

@@ -83,6 +83,23 @@ TEST_F(CliFitCollection, AMaterialThatFailsDoesNotStopTheOthers) {
   EXPECT_THAT(line, HasSubstr("pbnbrdf: 1 of 2 materials failed; "));
 }
 
+TEST_F(CliFitCollection, SeveralRunsFillAFolderAndTheLastMakesTheTable) {
+  WriteMaterial("a.csv", 0.2);
+  WriteMaterial("b.csv", 0.3);
+  WriteBytes(Path("c.csv"), "theta_i,phi_i,theta_o,phi_o,value\n0,0,0\n");
+  const std::string fit = Fit(Path("*.csv"));
+  EXPECT_EQ(Run(fit + "--list").out, "a\nb\nc\n");
+  EXPECT_FALSE(std::filesystem::exists(Path("fits")));
+  ASSERT_EQ(Run(fit + "--only=b").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(Path("fits/b.safetensors")));
+  EXPECT_FALSE(std::filesystem::exists(Path("fits/a.safetensors")));
+  EXPECT_FALSE(std::filesystem::exists(Path("fits/fits.csv")));
+  ExpectError(fit + "'--only=a;c'", 1, "1 of 2 materials failed; c: " + Path("c.csv"));
+  EXPECT_EQ(Run(fit).status, 1);
+  EXPECT_EQ(States(), (Names{{"a", "kept"}, {"b", "kept"}, {"c", "failed"}}));
+  ExpectError(fit + "--only=d", 1, "only: no material is named 'd'");
+}
+
 TEST_F(CliFitCollection, RefusesWhatCannotBeAFolderOfFits) {
   const std::string a = Path("a.csv"), out = " --out=" + Path("out");
   WriteMaterial("a.csv", 0.2);

@@ -5,7 +5,7 @@
 build=$1 seconds=$2 name=$3
 corpus=$build/corpus/$name log=$build/findings/$(echo "$name" | tr / _).log
 mkdir -p "$corpus"
-if ASAN_OPTIONS=quarantine_size_mb=16 "$build/bin/$(dirname "$name")_fuzz" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=400 \
+if ASAN_OPTIONS=quarantine_size_mb=16 "$build/bin/$(dirname "$name")_fuzz" -max_total_time="$seconds" -timeout=100 -rss_limit_mb=400 \
   -malloc_limit_mb=1000000 -print_final_stats=1 -artifact_prefix="${log%.log}_" "$corpus" "$build/seeds/$name" \
   > "$log" 2>&1; then
   echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") executions, no finding"

@@ -1,0 +1,77 @@
+#!/bin/sh
+# A Slurm of two nodes on this machine alone, on the loopback interface, in one folder. To be sourced, as root:
+#   slurm_start FOLDER      starts munge, the controller and the nodes node1, node2 of one core each
+#   slurm_crash NODE        ends the node's daemon and what runs on it at once, as if the machine had lost power
+#   slurm_node NODE         starts its daemon
+#   slurm_stop              ends all that was started
+export SLURM_CONF
+
+slurm_start() {
+  slurm=$1
+  SLURM_CONF=$slurm/slurm.conf
+  mkdir -p "$slurm/state" "$slurm/munge"
+  chmod 755 "$slurm" "$slurm/munge"
+  head -c 1024 /dev/urandom > "$slurm/munge/key"
+  chmod 400 "$slurm/munge/key"
+  cat > "$SLURM_CONF" <<TXT
+ClusterName=test
+SlurmctldHost=localhost(127.0.0.1)
+SlurmctldPort=26817
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket=$slurm/munge/socket
+CryptoType=crypto/munge
+StateSaveLocation=$slurm/state
+SlurmdSpoolDir=$slurm/spool-%n
+SlurmctldPidFile=$slurm/slurmctld.pid
+SlurmdPidFile=$slurm/slurmd-%n.pid
+SlurmctldLogFile=$slurm/slurmctld.log
+SlurmdLogFile=$slurm/slurmd-%n.log
+JobCompType=jobcomp/filetxt
+JobCompLoc=$slurm/completed.txt
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core_Memory
+ReturnToService=2
+SlurmdTimeout=30
+MpiDefault=none
+SlurmdParameters=config_overrides
+NodeName=node1 NodeHostname=localhost NodeAddr=127.0.0.1 Port=26818 CPUs=1 RealMemory=1500
+NodeName=node2 NodeHostname=localhost NodeAddr=127.0.0.1 Port=26819 CPUs=1 RealMemory=1500
+PartitionName=all Nodes=node1,node2 Default=YES MaxTime=INFINITE State=UP
+TXT
+  munged --force --key-file="$slurm/munge/key" --socket="$slurm/munge/socket" --pid-file="$slurm/munge/pid" \
+    --log-file="$slurm/munge/log" --seed-file="$slurm/munge/seed"
+  slurmctld
+  slurm_node node1
+  slurm_node node2
+  for _ in $(seq 60); do
+    [ "$(sinfo --noheader --format=%T --states=idle --Node 2> /dev/null | wc -l)" = 2 ] && return 0
+    sleep 1
+  done
+  echo "Slurm didn't start:" >&2
+  cat "$slurm"/*.log >&2
+  return 1
+}
+
+slurm_node() { slurmd -N "$1"; }
+
+slurm_crash() {
+  kill -KILL "$(cat "$slurm/slurmd-$1.pid")"
+  # What the node's jobs started carries the node's name in its environment.
+  for process in $(grep -lzx "SLURMD_NODENAME=$1" /proc/[0-9]*/environ 2> /dev/null | cut -d / -f 3); do
+    kill -KILL "$process" 2> /dev/null || true
+  done
+  for process in $(pgrep --full "slurmstepd: \[.*\]" || true); do
+    if tr '\0' '\n' < "/proc/$process/environ" 2> /dev/null | grep -q "$slurm"; then kill -KILL "$process"; fi
+  done
+}
+
+slurm_stop() {
+  [ -n "$slurm" ] || return 0
+  scancel --user="$(id -un)" 2> /dev/null || true
+  for pid in "$slurm"/slurmd-node?.pid "$slurm/slurmctld.pid" "$slurm/munge/pid"; do
+    if [ -s "$pid" ]; then kill "$(cat "$pid")" 2> /dev/null || true; fi
+  done
+}
