@@ -58,8 +58,9 @@ void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& run)
 
 void WithThreads(int threads, const std::function<void()>& run) {
   const int count = threads > 0 ? threads : kThreads;
-  // Embree, which works by TBB, keeps to as many.
-  tbb::task_arena(count).execute([&] {
+  // Embree, which works by TBB, keeps to as many; TBB complains of more than the machine has.
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  tbb::task_arena(std::min(count, cores)).execute([&] {
     const ScopedThreads scope(count);
     run();
   });
