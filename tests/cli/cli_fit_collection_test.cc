@@ -94,7 +94,7 @@ TEST_F(CliFitCollection, SeveralRunsFillAFolderAndTheLastMakesTheTable) {
   EXPECT_TRUE(std::filesystem::exists(Path("fits/b.safetensors")));
   EXPECT_FALSE(std::filesystem::exists(Path("fits/a.safetensors")));
   EXPECT_FALSE(std::filesystem::exists(Path("fits/fits.csv")));
-  ExpectError(fit + "'--only=a;c'", 1, "1 of 2 materials failed; c: " + Path("c.csv"));
+  ExpectError(fit + "--quiet '--only=a;c'", 1, "1 of 2 materials failed; c: " + Path("c.csv"));
   EXPECT_EQ(Run(fit).status, 1);
   EXPECT_EQ(States(), (Names{{"a", "kept"}, {"b", "kept"}, {"c", "failed"}}));
   ExpectError(fit + "--only=d", 1, "only: no material is named 'd'");

@@ -58,13 +58,21 @@ TXT
 slurm_node() { slurmd -N "$1"; }
 
 slurm_crash() {
+  jobs=$(squeue --noheader --states=RUNNING --nodelist="$1" --format=%A)
   kill -KILL "$(cat "$slurm/slurmd-$1.pid")"
-  # What the node's jobs started carries the node's name in its environment.
-  for process in $(grep -lzx "SLURMD_NODENAME=$1" /proc/[0-9]*/environ 2> /dev/null | cut -d / -f 3); do
-    kill -KILL "$process" 2> /dev/null || true
+  for job in $jobs; do
+    # The steps' daemons, of this Slurm and no other one's, and what they started.
+    for process in $(pgrep --full "^slurmstepd: \[$job\." || true) $(processes_with "SLURM_JOB_ID=$job"); do
+      if has_environment "$process" "SLURM_CONF=$SLURM_CONF"; then kill -KILL "$process" 2> /dev/null || true; fi
+    done
   done
-  for process in $(pgrep --full "slurmstepd: \[.*\]" || true); do
-    if tr '\0' '\n' < "/proc/$process/environ" 2> /dev/null | grep -q "$slurm"; then kill -KILL "$process"; fi
+}
+
+has_environment() { tr '\0' '\n' < "/proc/$1/environ" 2> /dev/null | grep -qx "$2"; }
+
+processes_with() {
+  for folder in /proc/[0-9]*; do
+    if has_environment "${folder#/proc/}" "$1"; then echo "${folder#/proc/}"; fi
   done
 }
 
