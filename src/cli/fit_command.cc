@@ -155,6 +155,9 @@ int RunFit(const FitCommandOptions& options, const Arguments&) {
   if (out_dir.empty() && (options.list || !options.collection.only.empty())) {
     throw UsageError("--list and --only are for --out_dir");
   }
+  if (options.report && !options.collection.only.empty()) {
+    throw UsageError("--report is for all fits of --out_dir, the run without --only");
+  }
   CatchInterrupt();
   return out_dir.empty() ? FitOne(options) : FitMany(options);
 }

@@ -98,6 +98,8 @@ TEST_F(CliFitCollection, SeveralRunsFillAFolderAndTheLastMakesTheTable) {
   EXPECT_EQ(Run(fit).status, 1);
   EXPECT_EQ(States(), (Names{{"a", "kept"}, {"b", "kept"}, {"c", "failed"}}));
   ExpectError(fit + "--only=d", 1, "only: no material is named 'd'");
+  ExpectError("fit --material=" + Path("a.csv") + " --only=a --out=" + Path("out"), 2,
+              "--list and --only are for --out_dir");
 }
 
 TEST_F(CliFitCollection, RefusesWhatCannotBeAFolderOfFits) {
