@@ -216,7 +216,8 @@ TEST_P(ObjectiveTest, CurvatureMayBeInDoubleAlone) {
 }
 
 TEST_P(ObjectiveTest, CurveAgreesWithSecondDifferencesOfJets) {
-  auto [name, problem, weights] = GetParam();
+  FitProblem problem = GetParam().problem;
+  const std::vector<double>& weights = GetParam().weights;
   problem.terms.SetWeight("energy", 0.0);  // of which Curve takes no notice
   problem.terms.loss = Loss::kL2;          // for jets would differentiate the robust weights, too
   const std::vector<double> direction = RandomWeights(problem.Shape(), 0.5, /*seed=*/5);
