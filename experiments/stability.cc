@@ -34,12 +34,12 @@ constexpr char kUsage[] =
 A run has a level of each of these factors: material, stress, solver, loss, terms, encoding, precision,
 activation, initialization, sampling and seed. Of 16 random combinations each run takes the one with
 the most pairs of levels that haven't appeared yet; the report says how many have. Runs are done in
-processes of their own, several at a time: one that crashes, or that takes more than two minutes of a
+processes of their own, several at a time: one that crashes, or that takes more than five minutes of a
 core, costs no other run. Writes stability.csv, a row for each run, and stability.md.
 )";
 
 constexpr int kChunk = 25;              // runs of a process
-constexpr int kMaxCpuSeconds = 120;     // of a run; the slowest known takes about half of it
+constexpr int kMaxCpuSeconds = 300;     // of a run; the slowest known takes one to two minutes
 constexpr unsigned kMaxSeconds = 1200;  // of a run, for one that waits for ever
 constexpr int kSignalStatus = 128;      // of a process that a signal ended, plus the signal
 
