@@ -43,9 +43,9 @@ slurm_node node1
 wait "$snakemake" || { cat snakemake.log && exit 1; }
 same_as_local snakemake
 completed=$(grep -c 'JobState=COMPLETED' slurm/completed.txt)
-requeued=$(grep -c -i 'requeu' slurm/slurmctld.log || true)
-echo "$completed jobs completed, $requeued lines of the controller's log about jobs that ran again"
-[ "$completed" = 24 ]
+lost=$(grep -c 'requeue JobId=.* due to node failure' slurm/slurmctld.log || true)
+echo "$completed jobs completed, $lost lost with their node and run again"
+[ "$completed" = 24 ] && [ "$lost" -ge 1 ]
 
 echo "3. By a job array on Slurm"
 # shellcheck disable=SC2086

@@ -61,14 +61,16 @@ slurm_crash() {
   jobs=$(squeue --noheader --states=RUNNING --nodelist="$1" --format=%A)
   kill -KILL "$(cat "$slurm/slurmd-$1.pid")"
   for job in $jobs; do
-    # The steps' daemons, of this Slurm and no other one's, and what they started.
-    for process in $(pgrep --full "^slurmstepd: \[$job\." || true) $(processes_with "SLURM_JOB_ID=$job"); do
-      if has_environment "$process" "SLURM_CONF=$SLURM_CONF"; then kill -KILL "$process" 2> /dev/null || true; fi
+    for process in $(processes_with "SLURM_JOB_ID=$job"); do
+      has_environment "$process" "SLURM_CONF=$SLURM_CONF" || continue
+      parent=$(ps -o ppid= -p "$process" | tr -d ' ')  # the daemon of the step, where it is that
+      if [ "$(ps -o comm= -p "$parent")" = slurmstepd ]; then kill -KILL "$parent"; fi
+      kill -KILL "$process" 2> /dev/null || true
     done
   done
 }
 
-has_environment() { tr '\0' '\n' < "/proc/$1/environ" 2> /dev/null | grep -qx "$2"; }
+has_environment() { { tr '\0' '\n' < "/proc/$1/environ"; } 2> /dev/null | grep -qx "$2"; }
 
 processes_with() {
   for folder in /proc/[0-9]*; do
