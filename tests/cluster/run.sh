@@ -3,12 +3,13 @@
 # job array. Both must end with the networks of a local run, to the bit: run.sh PBNBRDF. As root.
 set -eu
 pbnbrdf=$1
-slurm=
+slurm= snakemake=
 here=$(cd "$(dirname "$0")" && pwd)
 cluster=$(cd "$here/../../experiments/cluster" && pwd)
 folder=$(mktemp -d)
 . "$here/slurm.sh"
-trap 'slurm_stop; rm -rf "$folder"' EXIT
+trap '[ -z "$snakemake" ] || kill "$snakemake" 2> /dev/null || true; slurm_stop; rm -rf "$folder"' EXIT
+trap 'exit 1' INT TERM
 cd "$folder"
 for n in 1 2 3; do
   awk -v n="$n" -v OFS=, 'BEGIN {
@@ -41,6 +42,7 @@ slurm_crash node1
 sleep 3
 slurm_node node1
 wait "$snakemake" || { cat snakemake.log && exit 1; }
+snakemake=
 same_as_local snakemake
 completed=$(grep -c 'JobState=COMPLETED' slurm/completed.txt)
 lost=$(grep -c 'requeue JobId=.* due to node failure' slurm/slurmctld.log || true)
