@@ -21,7 +21,7 @@ only() {
   fi
 }
 only 'gflags|glog' cli python
-only 'ceres|Eigen' models residuals problem solve
+only 'ceres|Eigen' models residuals problem solve database
 only 'nlohmann' base measure models network export render report cli python
 only 'hdf5|H5' sources
 only 'Imf|OpenEXR|png\.h' image

@@ -1,7 +1,5 @@
 #include "measured_samples.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -70,10 +68,6 @@ class ValuesOf final : public Brdf {
   std::shared_ptr<const Brdf> source_;
 };
 
-std::array<double, 6> Numbers(const DirectionPair& pair) {
-  return {pair.wi.x, pair.wi.y, pair.wi.z, pair.wo.x, pair.wo.y, pair.wo.z};
-}
-
 double RepetitionFloor(std::span<const BrdfSample> samples, bool isotropic) {
   const PointTree tree = TreeOf(samples, isotropic);
   double sum = 0.0;
@@ -123,19 +117,6 @@ std::vector<BrdfSample> SamplesAtMeasured(const Brdf& material, std::size_t coun
     all.insert(all.end(), samples.begin(), samples.end());
   }
   return all.empty() ? HeldOutSamples(material, count, kSeed) : all;
-}
-
-std::vector<BrdfSample> TrainingMeasurements(const Brdf& material) {
-  std::vector<BrdfSample> samples = material.Measurements();
-  std::vector<std::array<double, 6>> held_out;
-  for (const BrdfSample& sample : HeldOutSamples(material, samples.size(), kSeed)) {
-    held_out.push_back(Numbers(sample.pair));
-  }
-  std::sort(held_out.begin(), held_out.end());
-  std::erase_if(samples, [&](const BrdfSample& sample) {
-    return std::binary_search(held_out.begin(), held_out.end(), Numbers(sample.pair));
-  });
-  return samples;
 }
 
 double MeasuredFloor(const Brdf& material, std::span<const BrdfSample> samples) {

@@ -19,9 +19,6 @@ std::vector<BrdfSample> SamplesAtAngle(const Brdf& material, double theta_i, std
 // them, of a material that has neither.
 std::vector<BrdfSample> SamplesAtMeasured(const Brdf& material, std::size_t count);
 
-// The measurements that fits do see.
-std::vector<BrdfSample> TrainingMeasurements(const Brdf& material);
-
 // The least mean absolute log error of any reciprocal fit on samples of the material (ReciprocalFloor). Of a
 // list of measurements it is half the mean difference of those at the same place, repeated or reciprocal
 // (scattered.h); NaN if there are no two.

@@ -72,6 +72,8 @@ Command FitCommand();
 Command FitModelCommand();
 Command InfoCommand();
 Command MeasureCommand();
+Command PlanCommand();
+Command PriorCommand();
 
 // With the render module only.
 Command FitSceneCommand();

@@ -58,7 +58,9 @@ std::string FingerprintOf(const FitRequest& request) {
   fingerprint.Add(SubjectFields(&copy).Lines());
   fingerprint.Add(ProblemText(request.setup));
   fingerprint.Add(StrCat(SourceFingerprint(request.material.source)));
-  if (!request.init.empty()) fingerprint.Add(StrCat(SourceFingerprint(request.init)));
+  for (const std::string& file : {request.init, request.prior}) {
+    if (!file.empty()) fingerprint.Add(StrCat(SourceFingerprint(file)));
+  }
   std::ostringstream text;
   text << std::hex << std::setw(16) << std::setfill('0') << fingerprint.value();
   return text.str();

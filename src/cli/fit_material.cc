@@ -1,7 +1,9 @@
 #include "fit_material.h"
 
 #include "base/about.h"
+#include "pbnbrdf/database/start_from_prior.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "sources/collection_file.h"
 
 namespace pbnbrdf::cli {
 namespace {
@@ -31,30 +33,40 @@ Fields SubjectFields(FitRequest* request) {
   fields.Add(ScaleField(&request->material));
   fields.Add(Text("init", &request->init,
                   "start from this fitted network, which has the same shape and encoding"));
+  fields.Add(Text("prior", &request->prior,
+                  "what a database has in common, by pbnbrdf prior: start from what it says of the "
+                  "material, which decides where nothing was measured"));
   return fields;
 }
 
 MaterialFitter::MaterialFitter(const FitRequest& request)
-    : request_(request), material_(request.material.Open()) {}
-
-Fit MaterialFitter::FitNetwork(FitOptions options) const {
-  const FitProblem& problem = request_.setup.problem;
-  if (!request_.init.empty()) {
-    options.initial_weights = WeightsOf(request_.init, problem.For(*material_).Shape());
+    : request_(request),
+      material_(request.material.Open()),
+      problem_(request.setup.problem),
+      options_(request.setup.options) {
+  if (!request.prior.empty()) {
+    const Collection prior = ReadCollection(request.prior);
+    About(request.material.source, [&] {
+      std::visit(
+          [&](const auto& known) { StartFromPrior(known, *material_, &problem_, &options_); },
+          prior);
+    });
   }
-  return About(request_.material.source, [&] { return FitBrdf(*material_, problem, options); });
+  if (!request.init.empty()) {
+    options_.initial_weights = WeightsOf(request.init, problem_.For(*material_).Shape());
+  }
 }
 
 FittedMaterial MaterialFitter::Run(
     bool reports_heldout_error, const std::function<bool(const FitProgress&)>& on_iteration) const {
-  const double checks = SecondsOfChecks(request_.setup.problem.For(*material_).Shape());
-  FitOptions options = request_.setup.options;
+  const double checks = SecondsOfChecks(problem_.For(*material_).Shape());
+  FitOptions options = options_;
   const double max_seconds = options.schedule.max_seconds, end = End(max_seconds) - checks;
   options.schedule.max_seconds = std::max(end - timer_.Seconds(), kMinPart * max_seconds);
   options.limits_wall_time = true;
   options.reports_heldout_error = reports_heldout_error;
   options.on_iteration = on_iteration;
-  Fit fit = FitNetwork(std::move(options));
+  Fit fit = About(request_.material.source, [&] { return FitBrdf(*material_, problem_, options); });
   Json measures =
       MeasureFit(*material_, fit.network, fit.network.weights().size(),
                  {.seconds = end - timer_.Seconds(), .profile = fit.summary.energy.profile});

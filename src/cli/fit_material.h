@@ -14,7 +14,8 @@ namespace pbnbrdf::cli {
 
 struct FitRequest {
   MaterialOptions material;
-  std::string init;  // a network to start from, or ""
+  std::string init;   // a network to start from, or ""
+  std::string prior;  // what a database has in common (WeightFamily), or ""
   FitSetup setup;
 };
 
@@ -40,11 +41,11 @@ class MaterialFitter {
                      const std::function<bool(const FitProgress&)>& on_iteration) const;
 
  private:
-  Fit FitNetwork(FitOptions options) const;
-
   const FitRequest& request_;
   const Timer timer_;
   const std::unique_ptr<Brdf> material_;
+  FitProblem problem_;
+  FitOptions options_;  // with where the fit starts
 };
 
 }  // namespace pbnbrdf::cli

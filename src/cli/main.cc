@@ -16,11 +16,11 @@ namespace {
 
 // In the order in which people need them.
 std::vector<Command> Commands() {
-  return {FitCommand(),     MeasureCommand(), InfoCommand(),     EvalCommand(), ExportCommand(),
+  return {FitCommand(),     MeasureCommand(),  InfoCommand(),     EvalCommand(), ExportCommand(),
 #ifdef PBNBRDF_HAS_RENDER
-          ReportCommand(),  RenderCommand(),  FitSceneCommand(),
+          ReportCommand(),  RenderCommand(),   FitSceneCommand(),
 #endif
-          CompareCommand(), FitModelCommand()};
+          CompareCommand(), FitModelCommand(), PriorCommand(),    PlanCommand()};
 }
 
 // Whether the arguments ask for help; `all` if for all of it.

@@ -157,6 +157,12 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
     cautions.push_back(
         "the fit is not reciprocal: pictures depend on which end of a light path is called wi");
   }
+  const std::size_t measurements = material.Measurements().size();
+  if (measurements > 0 && !HoldsOut(measurements)) {
+    cautions.push_back(StrCat("of ", measurements,
+                              " measurements none is held out: a fit to them has seen what its "
+                              "errors are measured at"));
+  }
   if (errors.relative_error > kExplainsNothing) {
     cautions.push_back(StrCat("the fit explains nothing: values are wrong by ",
                               std::lround(100.0 * errors.relative_error), " % in the mean"));

@@ -54,6 +54,11 @@ std::map<std::string, std::string> ParseMetadata(const std::string& path, const 
   }
 }
 
+template <typename T>
+void AppendBytes(const std::vector<T>& values, std::string* bytes) {
+  bytes->append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
 }  // namespace
 
 std::string ShapeText(const std::vector<std::int64_t>& shape) {
@@ -72,8 +77,8 @@ std::uint64_t ElementCount(const std::vector<std::int64_t>& shape, std::uint64_t
   return count;
 }
 
-SafetensorsFile ReadSafetensors(const std::string& path) {
-  const std::string bytes = ReadFile(path, kMaxWeightFileSize);
+SafetensorsFile ReadSafetensors(const std::string& path, std::uintmax_t max_size) {
+  const std::string bytes = ReadFile(path, max_size);
   std::uint64_t header_size = 0;
   if (bytes.size() >= kLengthBytes) std::memcpy(&header_size, bytes.data(), kLengthBytes);
   if (header_size < 2 || header_size > bytes.size() - kLengthBytes) {
@@ -101,16 +106,20 @@ SafetensorsFile ReadSafetensors(const std::string& path) {
   return file;
 }
 
-std::string SafetensorsBytes(const SafetensorsFile& file) {
+std::string SafetensorsBytes(const SafetensorsFile& file, bool single) {
   Json header = Json::object();
   if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
   std::string data;
   for (const auto& [name, tensor] : file.tensors) {
-    const std::size_t size = tensor.values.size() * sizeof(double);
-    header[name] = {{"data_offsets", {data.size(), data.size() + size}},
-                    {"dtype", "F64"},
+    const std::size_t begin = data.size();
+    if (single) {
+      AppendBytes(std::vector<float>(tensor.values.begin(), tensor.values.end()), &data);
+    } else {
+      AppendBytes(tensor.values, &data);
+    }
+    header[name] = {{"data_offsets", {begin, data.size()}},
+                    {"dtype", single ? "F32" : "F64"},
                     {"shape", tensor.shape}};
-    data.append(reinterpret_cast<const char*>(tensor.values.data()), size);
   }
   // File names may be in it that aren't UTF-8.
   std::string text = JsonLine(header);

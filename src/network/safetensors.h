@@ -15,11 +15,12 @@ struct SafetensorsFile {
   std::map<std::string, std::string> metadata;
 };
 
-// Reads F64 and F32 tensors. Throws Error if the file is larger than 64 MiB, its header isn't what
+// Reads F64 and F32 tensors. Throws Error if the file is larger than max_size bytes, its header isn't what
 // the format prescribes, the header and the file's length disagree, or a value isn't finite.
-SafetensorsFile ReadSafetensors(const std::string& path);
+SafetensorsFile ReadSafetensors(const std::string& path,
+                                std::uintmax_t max_size = kMaxWeightFileSize);
 
-// The bytes of a file of F64 tensors.
-std::string SafetensorsBytes(const SafetensorsFile& file);
+// The bytes of a file of F64 tensors, or of F32 ones.
+std::string SafetensorsBytes(const SafetensorsFile& file, bool single = false);
 
 }  // namespace pbnbrdf

@@ -35,8 +35,9 @@ std::vector<BrdfSample> Some(std::span<const BrdfSample> measurements) {
   return some;
 }
 
-AnalyticBrdf FitModel(std::span<const BrdfSample> measurements, bool isotropic) {
-  return FitAnalytic(Some(measurements), isotropic, FindAnalyticModel("ggx"), kOptions).brdf;
+std::shared_ptr<const Brdf> FitModel(std::span<const BrdfSample> measurements, bool isotropic) {
+  return std::make_shared<AnalyticBrdf>(
+      FitAnalytic(Some(measurements), isotropic, FindAnalyticModel("ggx"), kOptions).brdf);
 }
 
 ScatteredData Ratios(std::span<const BrdfSample> measurements, bool isotropic, const Brdf& model) {
@@ -58,12 +59,14 @@ ScatteredData Ratios(std::span<const BrdfSample> measurements, bool isotropic, c
 
 }  // namespace
 
-GapFiller::GapFiller(std::span<const BrdfSample> measurements, bool isotropic)
-    : model_(FitModel(measurements, isotropic)), ratios_(Ratios(measurements, isotropic, model_)) {}
+GapFiller::GapFiller(std::span<const BrdfSample> measurements, bool isotropic,
+                     std::shared_ptr<const Brdf> model)
+    : model_(model ? std::move(model) : FitModel(measurements, isotropic)),
+      ratios_(Ratios(measurements, isotropic, *model_)) {}
 
 std::vector<BrdfSample> GapFiller::At(const std::vector<DirectionPair>& pairs) const {
   std::vector<Rgb> values(pairs.size()), ratios(pairs.size());
-  model_.Evaluate(pairs, values);
+  model_->Evaluate(pairs, values);
   ratios_.EvaluateUnclipped(pairs, ratios);
   std::vector<BrdfSample> samples;
   for (std::size_t n = 0; n < pairs.size(); ++n) {

@@ -18,8 +18,10 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kBatch = 1024;
 constexpr std::size_t kDrawsPerKnown = 10000;
-constexpr std::size_t kHeldOutOneIn = 8;
+constexpr std::size_t kHeldOutOneIn = 8, kFewestToHoldOut = 100;
 constexpr std::size_t kFewMeasurements = 3000, kMeasuredToInterpolated = 3;
+constexpr std::size_t kExpected =
+    9000;  // interpolated ones at least, where it is known what to expect
 constexpr double kPlacesPerUnit = 1e6;
 // Of the training samples: the part at measured directions, where f isn't measured everywhere alike. More of them
 // bring fits nearer there, and farther in between: 0.55 to 0.6 is the middle (experiments/measured.cc).
@@ -53,14 +55,15 @@ std::uint64_t PlaceHash(const DirectionPair& pair, bool isotropic) {
   return hash;
 }
 
-// The measurements of the set: those of the lowest hashes are held out, at least one.
+// The measurements of the set: those of the lowest hashes are held out.
 std::vector<BrdfSample> PartOf(const std::vector<BrdfSample>& all, SampleSet set, bool isotropic) {
+  if (!HoldsOut(all.size())) return all;
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   for (std::size_t n = 0; n < all.size(); ++n) {
     order.emplace_back(PlaceHash(all[n].pair, isotropic), n);
   }
   std::sort(order.begin(), order.end());
-  const std::size_t held_out = std::max<std::size_t>(all.size() / kHeldOutOneIn, 1);
+  const std::size_t held_out = all.size() / kHeldOutOneIn;
   const std::size_t begin = set == SampleSet::kHeldOut ? 0 : held_out;
   const std::size_t end = set == SampleSet::kHeldOut ? held_out : all.size();
   std::vector<BrdfSample> part;
@@ -76,8 +79,15 @@ void Shuffle(std::vector<BrdfSample>* samples, std::mt19937_64* random) {
 
 }  // namespace
 
-SampleStream::SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed)
-    : brdf_(brdf), set_(set), angles_(std::move(angles)), random_(seed) {
+bool HoldsOut(std::size_t measurements) { return measurements >= kFewestToHoldOut; }
+
+SampleStream::SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed,
+                           std::shared_ptr<const Brdf> expected)
+    : brdf_(brdf),
+      set_(set),
+      angles_(std::move(angles)),
+      random_(seed),
+      expected_(std::move(expected)) {
   Begin();
 }
 
@@ -92,21 +102,25 @@ SampleStream SampleStream::WithSeed(std::uint64_t seed) const {
 void SampleStream::Begin() {
   const std::vector<BrdfSample> all = brdf_.Measurements();
   if (all.empty()) return;
+  if (all.size() == 1) Fail("too little data: a single measurement");
   measured_ = PartOf(all, set_, brdf_.IsIsotropic());
-  if (measured_.empty()) Fail("too little data: a single measurement");
   if (set_ == SampleSet::kTraining) AddInterpolated();
   Shuffle(&measured_, &random_);
 }
 
 void SampleStream::AddInterpolated() {
-  if (!filler_) filler_ = std::make_shared<GapFiller>(measured_, brdf_.IsIsotropic());
+  if (!filler_) {
+    filler_ = std::make_shared<GapFiller>(measured_, brdf_.IsIsotropic(), expected_);
+  }
   const std::size_t part = measured_.size();
   while (measured_.size() < kFewMeasurements) {
     measured_.insert(measured_.end(), measured_.begin(),
                      measured_.begin() + static_cast<std::ptrdiff_t>(part));
   }
   std::vector<DirectionPair> pairs;
-  while (pairs.size() < measured_.size() / kMeasuredToInterpolated) {
+  const std::size_t wanted =
+      std::max(measured_.size() / kMeasuredToInterpolated, expected_ ? kExpected : 0);
+  while (pairs.size() < wanted) {
     const DirectionPair pair = DrawPair();
     if (pair.AboveHorizon()) pairs.push_back(pair);
   }
@@ -167,6 +181,10 @@ void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* sample
     }
     pairs.clear();
   }
+}
+
+std::vector<BrdfSample> TrainingMeasurements(const Brdf& brdf) {
+  return PartOf(brdf.Measurements(), SampleSet::kTraining, brdf.IsIsotropic());
 }
 
 std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const SampleAngles& angles,

@@ -1,20 +1,15 @@
-// How a fit ends with no directional albedo above 1, at any incident direction: infinitely many constraints,
-// of which only those that matter are kept [1].
+// How a fit ends with no directional albedo above 1, at any incident direction.
 //
-// From round to round the albedos are measured by a quadrature much finer than the energy term's.
-// Each stratum's limit then makes up for what the term's own quadrature misses, and strata are added
-// where an albedo is above 1. What is left in the end is removed exactly.
-//
-// [1] R. Hettich, K. Kortanek. Semi-Infinite Programming: Theory, Methods, and Applications. SIAM
-//     Review 35(3), 1993: exchange methods.
+// From round to round the strata of the energy term follow the albedos (energy_constraints.h). What is left in the
+// end is removed exactly.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "base/parallel.h"
 #include "base/timer.h"
 #include "pbnbrdf/brdf/albedo.h"
+#include "solve/energy_constraints.h"
 #include "solve/energy_correction.h"
 #include "solve/training.h"
 
@@ -22,10 +17,6 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Between the rounds.
-constexpr AlbedoGrid kRoundGrid = {.angles = 100, .azimuths = 8, .tolerance = 1e-4, .n_phi = 64};
-constexpr double kSameDirection = 0.02;  // radians at the normal, less towards the horizon
-constexpr int kStratumSpacing = 3;       // of the grid's directions that become strata
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
 constexpr int kMaxRounds = 24, kRoundIterations = 12, kHastyIterations = 4;
@@ -37,70 +28,6 @@ constexpr double kWeightGrowth = 10.0, kOverBalance = 30.0;
 // energy was made, this part.
 constexpr double kReserveProfiles = 3.0, kCorrectionPart = 0.15;
 constexpr double kRoundFall = 0.9;  // of what the largest albedo is above 1, if a round gets on
-
-class EnergyConstraints {
- public:
-  explicit EnergyConstraints(const FitProblem& problem);
-
-  // Measures the network, in single precision. Returns its largest directional albedo.
-  double Measure(const std::vector<double>& weights);
-
-  // Adds strata where the albedos that were measured last are too large.
-  void Exchange();
-
-  const std::vector<EnergyStratum>& strata() const { return strata_; }
-
- private:
-  void AddStratum(const IncidentAlbedo& at);
-
-  const FitProblem problem_;
-  NetworkShape shape_;
-  double solid_angle_;
-  std::vector<EnergyStratum> strata_;
-  std::vector<double> measured_;  // weights, to which the profile belongs
-  std::vector<IncidentAlbedo> profile_;
-};
-
-EnergyConstraints::EnergyConstraints(const FitProblem& problem)
-    : problem_(problem), shape_(problem.Shape()), strata_(EqualStrata(problem)) {
-  solid_angle_ = strata_.front().solid_angle;
-}
-
-double EnergyConstraints::Measure(const std::vector<double>& weights) {
-  const std::unique_ptr<Brdf> single = NeuralBrdf(shape_, weights).SinglePrecision();
-  const Brdf& network = *single;
-  if (weights != measured_) {
-    profile_ = AlbedoProfile(network, kRoundGrid);
-    measured_ = weights;
-  }
-  // A limit makes up for the error of the energy term's own quadrature, which is coarser.
-  const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
-  ParallelFor(strata_.size(), [&](std::size_t k) {
-    EnergyStratum& stratum = strata_[k];
-    const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
-    const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
-    for (int c = 0; c < 3; ++c) stratum.limit[c] = kTargetAlbedo - (exact[c] - own[c]);
-  });
-  return Largest(LargestAlbedos(profile_));
-}
-
-void EnergyConstraints::Exchange() {
-  for (int c = 0; c < 3; ++c) AddStratum(LargestIn(profile_, c));
-  for (std::size_t k = 0; k < profile_.size(); ++k) {
-    const bool is_addition = profile_[k].solid_angle == 0.0;
-    if (is_addition || k % kStratumSpacing == 0) AddStratum(profile_[k]);
-  }
-}
-
-// Unless there is one nearby, or the albedo there is small enough.
-void EnergyConstraints::AddStratum(const IncidentAlbedo& at) {
-  if (!(Largest(at.albedo) > kTargetAlbedo)) return;
-  const Vec3 wi = FromSpherical(at.theta_i, at.phi_i);
-  for (const EnergyStratum& stratum : strata_) {
-    if (Length(stratum.wi - wi) <= kSameDirection * wi.z) return;
-  }
-  strata_.push_back({wi, solid_angle_, {kTargetAlbedo, kTargetAlbedo, kTargetAlbedo}});
-}
 
 // What lowering all of log(1 + f) takes if the largest directional albedo is so much; LowerToConserve takes
 // less.

@@ -29,13 +29,6 @@ std::size_t BinIndex(const MerlGrid& grid, int theta_h, int theta_d, int phi_d) 
 
 double PhiRange(const MerlGrid& grid) { return grid.WholeCircle() ? 2.0 * kPi : kPi; }
 
-// Of a bin of the database's own grid.
-RusinkiewiczAngles CornerAngles(int theta_h, int theta_d, int phi_d) {
-  return {.theta_h = MerlRowAngle(theta_h),
-          .theta_d = 0.5 * kPi * theta_d / MerlBrdf::kThetaD,
-          .phi_d = kPi * phi_d / MerlBrdf::kPhiD};
-}
-
 std::string GridText(const MerlGrid& grid) {
   return StrCat(grid.theta_h, " x ", grid.theta_d, " x ", grid.phi_d);
 }
@@ -95,6 +88,23 @@ TablePosition Locate(const MerlGrid& grid, const DirectionPair& pair) {
 
 }  // namespace
 
+std::array<TableCorner, 8> CornersOf(const MerlGrid& grid, const DirectionPair& pair) {
+  const TablePosition at = Locate(grid, pair);
+  const auto weight = [](const AxisPosition& axis, bool upper) {
+    return upper ? axis.upper_weight : 1.0 - axis.upper_weight;
+  };
+  const auto index = [](const AxisPosition& axis, bool upper) {
+    return upper ? axis.upper : axis.lower;
+  };
+  std::array<TableCorner, 8> corners;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const bool h = k & 4, d = k & 2, p = k & 1;
+    corners[k] = {BinIndex(grid, index(at.theta_h, h), index(at.theta_d, d), index(at.phi_d, p)),
+                  weight(at.theta_h, h) * weight(at.theta_d, d) * weight(at.phi_d, p)};
+  }
+  return corners;
+}
+
 MerlBrdf::MerlBrdf(const MerlGrid& grid, std::vector<double> planes)
     : grid_(grid), planes_(std::move(planes)) {
   for (std::size_t bin = 0; bin < grid_.bins(); ++bin) valid_bins_ += IsValid(bin);
@@ -129,23 +139,43 @@ MerlBrdf MerlBrdf::Tabulate(const Brdf& source) {
         "anisotropic, and a MERL table has no phi_h: fit it as it is, or, for the nearest "
         "isotropic table, export a fit made with --encoding=merl");
   }
+  std::vector<BinValue> known;
+  std::vector<DirectionPair> pairs;
+  for (const std::size_t bin : BinsAboveHorizon()) {
+    const DirectionPair pair = CornerPair(bin);
+    if (!source.IsKnown(pair)) continue;
+    known.push_back({bin, {}});
+    pairs.push_back(pair);
+  }
+  std::vector<Rgb> values(pairs.size());
+  source.Evaluate(pairs, values);
+  for (std::size_t n = 0; n < values.size(); ++n) known[n].value = values[n];
+  return FromValues(known);
+}
+
+MerlBrdf MerlBrdf::FromValues(std::span<const BinValue> values) {
   std::vector<double> planes(3 * kBins, -1.0);
-  std::vector<DirectionPair> pairs(kPhiD);
-  std::vector<Rgb> values(kPhiD);
-  for (int h = 0; h < kThetaH; ++h) {
-    for (int d = 0; d < kThetaD; ++d) {
-      for (int p = 0; p < kPhiD; ++p) pairs[p] = FromAngles(CornerAngles(h, d, p));
-      source.Evaluate(pairs, values);
-      for (int p = 0; p < kPhiD; ++p) {
-        const auto& [wi, wo] = pairs[p];
-        if (std::min(wi.z, wo.z) <= kSmallestCosine || !source.IsKnown(pairs[p])) continue;
-        for (int c = 0; c < 3; ++c) {
-          planes[c * kBins + BinIndex({}, h, d, p)] = values[p][c] / kScale[c];
-        }
-      }
-    }
+  for (const auto& [bin, value] : values) {
+    for (std::size_t c = 0; c < 3; ++c) planes[c * kBins + bin] = value[c] / kScale[c];
   }
   return MerlBrdf({}, std::move(planes));
+}
+
+std::vector<std::size_t> MerlBrdf::BinsAboveHorizon() {
+  std::vector<std::size_t> bins;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const auto [wi, wo] = CornerPair(bin);
+    if (std::min(wi.z, wo.z) > kSmallestCosine) bins.push_back(bin);
+  }
+  return bins;
+}
+
+DirectionPair MerlBrdf::CornerPair(std::size_t bin) {
+  const auto phi_d = static_cast<double>(bin % kPhiD);
+  const auto theta_d = static_cast<double>(bin / kPhiD % kThetaD);
+  return FromAngles({.theta_h = MerlRowAngle(static_cast<int>(bin / (kPhiD * kThetaD))),
+                     .theta_d = 0.5 * kPi * theta_d / kThetaD,
+                     .phi_d = kPi * phi_d / kPhiD});
 }
 
 MerlBrdf MerlBrdf::Changed(const std::function<double(double f)>& change) const {
@@ -198,22 +228,12 @@ bool MerlBrdf::IsValid(std::size_t bin) const {
 }
 
 Rgb MerlBrdf::Interpolate(const DirectionPair& pair) const {
-  const TablePosition at = Locate(grid_, pair);
   Rgb sum = {};
   double total = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const auto weight = [&](const AxisPosition& axis, int bit) {
-      return corner & bit ? axis.upper_weight : 1.0 - axis.upper_weight;
-    };
-    const auto index = [&](const AxisPosition& axis, int bit) {
-      return corner & bit ? axis.upper : axis.lower;
-    };
-    const double w = weight(at.theta_h, 4) * weight(at.theta_d, 2) * weight(at.phi_d, 1);
-    const std::size_t bin =
-        BinIndex(grid_, index(at.theta_h, 4), index(at.theta_d, 2), index(at.phi_d, 1));
-    if (w <= 0.0 || !IsValid(bin)) continue;
-    total += w;
-    for (int c = 0; c < 3; ++c) sum[c] += w * kScale[c] * Stored(c, bin);
+  for (const auto& [bin, weight] : CornersOf(grid_, pair)) {
+    if (weight <= 0.0 || !IsValid(bin)) continue;
+    total += weight;
+    for (int c = 0; c < 3; ++c) sum[c] += weight * kScale[c] * Stored(c, bin);
   }
   if (total <= 0.0) return {};
   for (double& value : sum) value = std::min(value / total, kLargestValue);

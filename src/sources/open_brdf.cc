@@ -6,11 +6,13 @@
 #include <cstring>
 #include <string_view>
 
+#include "base/about.h"
 #include "base/text.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/models/builtin.h"
+#include "pbnbrdf/network/weight_family.h"
 #include "pbnbrdf/sources/astm.h"
 #include "pbnbrdf/sources/cornell.h"
 #include "pbnbrdf/sources/fred.h"
@@ -21,6 +23,8 @@
 #include "pbnbrdf/sources/scattered_files.h"
 #include "pbnbrdf/sources/sgd_file.h"
 #include "pbnbrdf/sources/zemax.h"
+#include "sources/collection_file.h"
+#include "sources/source_list.h"
 #include "sources/tensor_file.h"
 
 namespace pbnbrdf {
@@ -69,6 +73,15 @@ struct Format {
 
 // Files are told by what they hold; where nothing recognises it, as in a damaged file, by their names.
 const Format kFormats[] = {
+    {"collection of materials",
+     [](const Content& file) {
+       return LooksLikeSafetensors(file) && LooksLikeCollection(file.start);
+     },
+     {},
+     [](const std::string& path) -> std::unique_ptr<Brdf> {
+       const std::vector<std::string> names = MaterialNames(path);
+       Fail(path, ": holds ", names.size(), " materials; name one: ", path, "#", names.front());
+     }},
     {"safetensors network",
      LooksLikeSafetensors,
      {".safetensors"},
@@ -144,21 +157,23 @@ const Format& FormatOf(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<Brdf> OpenBrdf(const std::string& source) {
-  constexpr std::string_view kBuiltin = "builtin:", kSgd = "sgd:";
+  constexpr std::string_view kBuiltin = "builtin:";
   if (source.starts_with(kBuiltin)) return MakeBuiltin(source.substr(kBuiltin.size()));
-  if (source.starts_with(kSgd)) {
-    const std::string rest = source.substr(kSgd.size());
-    const std::size_t hash = rest.rfind('#');
-    if (hash == std::string::npos || hash + 1 == rest.size()) {
-      Fail(source, ": expected sgd:PARAMETERS.csv#MATERIAL");
-    }
-    return Boxed(ReadSgd(rest.substr(0, hash), rest.substr(hash + 1)));
-  }
   if (NamesAnalyticModel(source)) return Boxed(AnalyticBrdf::FromText(source));
+  const auto [is_sgd, file, material] = SourceParts(source);
+  if (is_sgd) {
+    if (material.empty()) Fail(source, ": expected sgd:PARAMETERS.csv#MATERIAL");
+    return Boxed(ReadSgd(file, material));
+  }
+  if (!material.empty()) return OpenMaterial(file, material);
   return FormatOf(source).open(source);
 }
 
 NeuralBrdf OpenNetwork(const std::string& path) {
+  if (const SourceParts parts(path); !parts.material.empty()) {
+    return About(parts.file,
+                 [&] { return WeightFamily::Read(parts.file).Material(parts.material); });
+  }
   const bool nbrdf = IsNbrdfFile(path) || LooksLikeNbrdf(ReadStart(path, kStart));
   return nbrdf ? ReadNbrdf(path) : NeuralBrdf::Read(path);
 }

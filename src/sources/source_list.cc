@@ -15,24 +15,13 @@
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/sources/nbrdf_files.h"
 #include "pbnbrdf/sources/sgd_file.h"
+#include "sources/collection_file.h"
 
 namespace pbnbrdf {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
 constexpr std::string_view kBuiltin = "builtin:", kSgd = "sgd:";
-
-// The parts of "sgd:FILE#MATERIAL", or else the file alone.
-struct Parts {
-  explicit Parts(const std::string& source) : file(source) {
-    if (!source.starts_with(kSgd)) return;
-    const std::size_t hash = source.rfind('#');
-    if (hash == std::string::npos) return;
-    file = source.substr(kSgd.size(), hash - kSgd.size());
-    material = source.substr(hash + 1);
-  }
-  std::string file, material;
-};
 
 bool IsPattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
 
@@ -63,9 +52,10 @@ std::vector<std::string> Expand(const std::string& part) {
     for (const BuiltinMaterial& material : BuiltinMaterials()) names.emplace_back(material.name);
     return NamesLike(part.substr(kBuiltin.size()), std::string(kBuiltin), names);
   }
-  const auto [file, material] = Parts(part);
+  const auto [is_sgd, file, material] = SourceParts(part);
   if (!material.empty()) {
-    return NamesLike(material, StrCat(kSgd, file, "#"), SgdMaterialNames(file));
+    return NamesLike(material, StrCat(is_sgd ? kSgd : "", file, "#"),
+                     is_sgd ? SgdMaterialNames(file) : MaterialNames(file));
   }
   return std::filesystem::exists(part) ? std::vector{part} : FilesLike(part);
 }
@@ -75,10 +65,21 @@ std::string KindOfSource(const std::string& source) {
   for (const std::string_view prefix : {kBuiltin, kSgd}) {
     if (source.starts_with(prefix)) return std::string(prefix.substr(0, prefix.size() - 1));
   }
+  const SourceParts parts(source);
+  if (!parts.material.empty()) return std::filesystem::path(parts.file).stem();
   return std::filesystem::absolute(source).parent_path().filename();
 }
 
 }  // namespace
+
+SourceParts::SourceParts(const std::string& source)
+    : is_sgd(source.starts_with(kSgd)), file(source) {
+  const std::size_t hash = source.rfind('#');
+  if (hash == std::string::npos || (!is_sgd && std::filesystem::exists(source))) return;
+  const std::size_t begin = is_sgd ? kSgd.size() : 0;
+  file = source.substr(begin, hash - begin);
+  material = source.substr(hash + 1);
+}
 
 std::vector<std::string> ExpandSources(const std::string& text) {
   std::vector<std::string> all;
@@ -94,7 +95,7 @@ std::vector<std::string> ExpandSources(const std::string& text) {
 
 std::string NameOfSource(const std::string& source) {
   if (source.starts_with(kBuiltin)) return source.substr(kBuiltin.size());
-  const Parts parts(source);
+  const SourceParts parts(source);
   return parts.material.empty() ? std::filesystem::path(source).stem().string() : parts.material;
 }
 
@@ -117,7 +118,7 @@ std::uint64_t SourceFingerprint(const std::string& source) {
   Fingerprint fingerprint;
   fingerprint.Add(source);
   if (source.starts_with(kBuiltin) || NamesAnalyticModel(source)) return fingerprint.value();
-  for (const std::string& file : FilesReadWith(Parts(source).file)) {
+  for (const std::string& file : FilesReadWith(SourceParts(source).file)) {
     fingerprint.Add(ReadFile(file, kMaxFileBytes));
   }
   return fingerprint.value();

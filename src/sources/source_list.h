@@ -6,10 +6,20 @@
 
 namespace pbnbrdf {
 
+// "sgd:FILE#MATERIAL" or "FILE#MATERIAL" in its parts; of any other source, a file whose own name has a # too, all
+// of it as `file`.
+struct SourceParts {
+  explicit SourceParts(const std::string& source);
+
+  bool is_sgd;
+  std::string file, material;  // material: "" if there is none
+};
+
 // The sources that a text stands for, parts between semicolons, each once, in order:
 //
 //   merl/*.binary       the files, by name; *, ? and [...] as the shell has them
 //   sgd:FILE#*          the materials of the file; builtin:* those that come with the program
+//   FILE#*              those of a file that holds several (collection_file.h)
 //   anything else       itself
 //
 // Throws Error if a pattern stands for nothing.

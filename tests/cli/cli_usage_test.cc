@@ -112,7 +112,7 @@ TEST_F(Cli, WrongUsageExitsWith2) {
   ExpectError("fitt", 2,
               "'fitt' is not a command: fit | measure | info | eval | export | report | render | "
               "fit-scene | "
-              "compare | fit-model; see pbnbrdf --help");
+              "compare | fit-model | prior | plan; see pbnbrdf --help");
   ExpectError("fit", 2, "--material is required");
   ExpectError("fit --material=builtin:satin-gold", 2, "--out or --out_dir is required");
   ExpectError("info builtin: --all", 2, "--all is not a flag");

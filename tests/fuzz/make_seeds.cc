@@ -11,6 +11,7 @@
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/image/exr.h"
 #include "pbnbrdf/image/png.h"
+#include "pbnbrdf/network/weight_family.h"
 #include "sources/archive_writer.h"
 #include "sources/npy_writer.h"
 #include "sources/rgl_writer.h"
@@ -44,12 +45,25 @@ std::string KerasArchive(const std::string& weights) {
   return bytes;
 }
 
+// A shared network of two materials.
+std::string PriorBytes() {
+  const NetworkShape shape(Encoding::kReciprocal, {2}, Activation::kTanh);
+  const std::string path = std::filesystem::temp_directory_path() / "make_seeds.prior";
+  WeightFamily(shape, RandomWeights(shape, 0.5, /*seed=*/1), RandomWeights(shape, 0.5, /*seed=*/2),
+               {{"a", {1.0}}, {"b", {-1.0}}})
+      .Write(path);
+  const std::string bytes = ReadFile(path, kMaxBytes);
+  std::filesystem::remove(path);
+  return bytes;
+}
+
 void AddNetworks(Seeds* seeds) {
   for (const Encoding encoding : {Encoding::kMerl, Encoding::kReciprocal}) {
     const NetworkShape shape(encoding, {2}, Activation::kTanh);
     seeds->Add("source/safetensors",
                NeuralBrdf(shape, RandomWeights(shape, 0.5, /*seed=*/1)).Serialized());
   }
+  seeds->Add("source/prior", PriorBytes());
   const NetworkShape shape(Encoding::kCartesian, {21, 21}, Activation::kRelu);
   const NeuralBrdf published(shape, RandomWeights(shape, 0.1, /*seed=*/2));
   const std::string h5 = ExportedFiles(published, "h5", "seed.h5").front().content;

@@ -1,6 +1,8 @@
 // Any file as a material: it is refused, or its values are finite and not negative.
 #include "fuzz_input.h"
+#include "pbnbrdf/base/files.h"
 #include "pbnbrdf/sources/open_brdf.h"
+#include "sources/collection_file.h"
 
 // HDF5 asks for as much memory as a damaged file says, copes with getting none, and doesn't give all of it back.
 extern "C" const char* __asan_default_options() { return "allocator_may_return_null=1"; }
@@ -37,13 +39,19 @@ void CheckMeasurements(const Brdf& brdf) {
   }
 }
 
+// The file, or its first material if it holds several.
+std::string SourceOf(const std::string& path) {
+  if (!LooksLikeCollection(ReadStart(path, 1 << 12))) return path;
+  return StrCat(path, "#", MaterialNames(path).front());
+}
+
 }  // namespace
 }  // namespace pbnbrdf
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const pbnbrdf::FuzzFile file(data, size);
   pbnbrdf::MayRefuse([&] {
-    const auto brdf = pbnbrdf::OpenBrdf(file.path());
+    const auto brdf = pbnbrdf::OpenBrdf(pbnbrdf::SourceOf(file.path()));
     pbnbrdf::CheckValues(*brdf);
     pbnbrdf::CheckMeasurements(*brdf);
     if (const auto estimate = brdf->BestEstimate(pbnbrdf::Brdf::Estimate::kLikeliest)) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "brdf/direction_pairs.h"
+#include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/models/analytic.h"
 
 namespace pbnbrdf {
@@ -159,6 +160,36 @@ TEST(Sampling, SaysSoWhenNothingIsKnown) {
   EXPECT_THAT(
       ErrorOf([] { DrawSamples(UnknownBrdf(), SampleSet::kTraining, Sampling::kUniform, 10, 1); }),
       testing::HasSubstr("too little data: 0 of"));
+}
+
+ScatteredBrdf Listed(std::size_t count) {
+  ScatteredData data;
+  data.kind = "a list";
+  for (const DirectionPair& pair : RandomPairs(count, 3)) {
+    data.samples.push_back({pair, {0.2, 0.2, 0.2}});
+  }
+  return ScatteredBrdf(std::move(data));
+}
+
+TEST(Sampling, OfFewMeasurementsNoneIsHeldOut) {
+  for (const std::size_t count : {20u, 400u}) {
+    const ScatteredBrdf list = Listed(count);
+    const std::size_t all = list.Measurements().size();
+    EXPECT_EQ(HoldsOut(all), count == 400u);
+    EXPECT_EQ(TrainingMeasurements(list).size(), HoldsOut(all) ? all - all / 8 : all);
+    EXPECT_EQ(HeldOutSamples(list, all, /*seed=*/1).size(), HoldsOut(all) ? all / 8 : all);
+  }
+  EXPECT_TRUE(TrainingMeasurements(kGrey).empty());
+}
+
+TEST(Sampling, WhatIsExpectedFillsTheGaps) {
+  // Ten measurements, of what is expected: elsewhere it is taken for that, too.
+  const ScatteredBrdf list = Listed(10);
+  const auto expected = std::make_shared<LambertBrdf>(Rgb{0.2 * kPi, 0.2 * kPi, 0.2 * kPi});
+  std::vector<BrdfSample> samples;
+  SampleStream(list, SampleSet::kTraining, Sampling::kHighlight, 1, expected).Draw(20000, &samples);
+  EXPECT_EQ(samples.size(), 12000u);
+  for (const BrdfSample& sample : samples) EXPECT_NEAR(sample.value[1], 0.2, 1e-9);
 }
 
 }  // namespace

@@ -56,6 +56,30 @@ TEST(Merl, TabulatingMarksWhatIsBelowTheHorizon) {
             346674u);
 }
 
+TEST(Merl, TheCornersAroundAPairAreTheBinsThatItsValueComesFrom) {
+  const MerlBrdf table = MerlBrdf::Tabulate(*MakeBuiltin("satin-gold"));
+  for (const DirectionPair& pair : {PairAt(20.25, 30.5, 60.75), PairAt(3.0, 50.9, 179.5)}) {
+    double total = 0.0, red = 0.0;
+    for (const auto& [bin, weight] : CornersOf({}, pair)) {
+      total += weight;
+      red += weight * ValueAt(table, MerlBrdf::CornerPair(bin))[0];
+    }
+    EXPECT_NEAR(total, 1.0, 1e-12);
+    EXPECT_NEAR(red, ValueAt(table, pair)[0], 1e-9 * red);
+  }
+}
+
+TEST(Merl, TablesFromValuesHaveThose) {
+  const std::vector<std::size_t> bins = MerlBrdf::BinsAboveHorizon();
+  EXPECT_EQ(bins.size(), MerlBrdf::kBins - 346674u);
+  const MerlBrdf table =
+      MerlBrdf::FromValues(std::vector<BinValue>{{bins[1000], {0.5, 0.25, 2.0}}});
+  EXPECT_EQ(table.valid_bins(), 1u);
+  const Rgb value = ValueAt(table, MerlBrdf::CornerPair(bins[1000]));
+  EXPECT_NEAR(value[0], 0.5, 1e-12);
+  EXPECT_NEAR(value[2], 2.0, 1e-12);
+}
+
 TEST(Merl, RefusesToTabulateAnAnisotropicMaterial) {
   EXPECT_THAT(ErrorOf([] { MerlBrdf::Tabulate(*MakeBuiltin("rolled-brass")); }),
               HasSubstr("a MERL table has no phi_h: fit it as it is, or"));

@@ -48,8 +48,9 @@ TEST_F(OpenByContent, WhatIsNotRecognisedIsSaidToBeSo) {
   };
   for (const std::string& content : std::vector<std::string>{
            "", "some prose, theta\n", std::string(100, '\xff'), "\x89PNG\r\n", "1 2 3\n4 5 6\n"}) {
-    EXPECT_THAT(error("a.txt", content),
-                HasSubstr("a.txt: not recognised; it is none of: safetensors"));
+    EXPECT_THAT(
+        error("a.txt", content),
+        HasSubstr("a.txt: not recognised; it is none of: collection of materials, safetensors"));
   }
   EXPECT_THAT(error("a", "x"), HasSubstr("Cornell measurements, in-plane measurements, CSV"));
   // Not by a name without its dot, and by one in capitals.

@@ -37,6 +37,9 @@ struct SampleAngles {
 // The two sets draw theta_d from disjoint grids: they have no sample in common, whatever the seeds.
 enum class SampleSet { kTraining, kHeldOut };
 
+// Whether some of so many measurements are held out of a fit: each counts where there are few.
+bool HoldsOut(std::size_t measurements);
+
 // Samples at which a Brdf is known, one after the other: the same arguments give the same ones,
 // however many at a time. Angles that are asked for belong to materials of their kind, isotropic or
 // not, and matter only to a Brdf that isn't a list of measurements.
@@ -44,14 +47,17 @@ enum class SampleSet { kTraining, kHeldOut };
 // Of a Brdf that is a list of measurements these are the samples, in a random order. One in 8 is held
 // out, whatever the seed, together with those at the same place (scattered.h): repeated, reciprocal
 // and, if isotropic, mirrored ones. To three training samples comes a fourth at angles drawn as those
-// of any other Brdf, with the value that they and a model fitted to them suggest there (gap_filler.h):
+// of any other Brdf, with the value that they and a model suggest there (gap_filler.h):
 // what is measured along a few lines only leaves wide gaps, in which networks that nothing holds grow by
 // orders of magnitude. Where there are fewer than 3000, all are repeated until they aren't, so that gaps
-// are filled, too, without counting more than measurements.
+// are filled, too, without counting more than measurements. Where it is known what to expect, there
+// are 9000 interpolated ones or more.
 class SampleStream {
  public:
-  // brdf must outlive this.
-  SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed);
+  // brdf must outlive this. expected: the model for what isn't measured; null: an analytic one that is fitted to
+  // the measurements.
+  SampleStream(const Brdf& brdf, SampleSet set, SampleAngles angles, std::uint64_t seed,
+               std::shared_ptr<const Brdf> expected = nullptr);
 
   // As if made with another seed, without what doesn't depend on it being done again.
   SampleStream WithSeed(std::uint64_t seed) const;
@@ -74,10 +80,14 @@ class SampleStream {
   SampleSet set_;
   SampleAngles angles_;
   std::mt19937_64 random_;
+  std::shared_ptr<const Brdf> expected_;
   std::shared_ptr<const GapFiller> filler_;  // of measured_; null where none is needed
   std::vector<BrdfSample> measured_;         // of the set, and interpolated ones, shuffled
   std::size_t next_ = 0;                     // of them
 };
+
+// The measurements of SampleSet::kTraining, in an order that hashes give; none if the Brdf isn't a list of them.
+std::vector<BrdfSample> TrainingMeasurements(const Brdf& brdf);
 
 // The first `count` samples of a SampleStream, or all if there are fewer.
 std::vector<BrdfSample> DrawSamples(const Brdf& brdf, SampleSet set, const SampleAngles& angles,

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,9 @@ struct FitOptions {
   int threads = 0;  // 0: as many as the machine has
   // Where to start from: Shape().num_weights() numbers of the problem, or none for random ones.
   std::vector<double> initial_weights;
+  // What a material that is a list of measurements is expected to be between them (SampleStream), such as what
+  // a database says of it (database/start_from_prior.h); null: an analytic model that is fitted to them.
+  std::shared_ptr<const Brdf> expected;
   // Called after each iteration if set; false stops the fit with the best weights so far.
   std::function<bool(const FitProgress&)> on_iteration;
   // Whether on_iteration is told the held-out error, which takes time; else it is told 0.

@@ -16,7 +16,9 @@
 //     2003.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,20 @@ struct MerlGrid {
   bool WholeCircle() const { return phi_d == 360; }  // else phi_d < pi
 };
 
+// A corner of the cell of a table that a pair lies in; the trilinear weights of all eight add up to 1.
+struct TableCorner {
+  std::size_t bin;
+  double weight;
+};
+
+std::array<TableCorner, 8> CornersOf(const MerlGrid& grid, const DirectionPair& pair);
+
+// f (1/sr) of a bin.
+struct BinValue {
+  std::size_t bin;
+  Rgb value;
+};
+
 class MerlBrdf final : public Brdf {
  public:
   // Of the database's own tables, and those of Tabulate.
@@ -45,6 +61,14 @@ class MerlBrdf final : public Brdf {
   // `source` at each bin's corner; invalid where it isn't known or a cosine is at most 1e-4. Throws
   // Error if it is anisotropic: a table has no phi_h.
   static MerlBrdf Tabulate(const Brdf& source);
+
+  // A table of the database's own grid, whose other bins are invalid.
+  static MerlBrdf FromValues(std::span<const BinValue> values);
+
+  // The bins of that grid at whose corner both directions are above the horizon (cosines above 1e-4),
+  // ascending, and such a corner.
+  static std::vector<std::size_t> BinsAboveHorizon();
+  static DirectionPair CornerPair(std::size_t bin);
 
   // The same bins with change(f) in the place of each f, 1/sr: the channels of a valid bin one after the
   // other, bin after bin. A negative result is noise.
