@@ -1,5 +1,5 @@
 # What `cmake --install` and the Debian packages hold: the program, with its manual and what bash completes of it; and,
-# for development, find_package(pbnbrdf [COMPONENTS core sources metrics render report]) and pkg-config's pbnbrdf.pc.
+# for development, find_package(pbnbrdf [COMPONENTS core sources database metrics render report]) and pkg-config's pbnbrdf.pc.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS pbnbrdf_program RUNTIME COMPONENT program)

@@ -32,11 +32,12 @@ const std::string kUsage =
   prior --out_dir=results --database='merl/*.h5' --hold_out=5
   prior --out_dir=results --database='merl/*.h5' --measured='cornell/*.brdf;rgl/*.bsdf'
 
-Of the database each --hold_out-th material is left out. It is then measured at few directions, --counts of
-them, as planned (pbnbrdf plan), and in a single scan: light from 45 degrees, seen in the plane of incidence every 5
-degrees. Compared are Nielsen's method (2015) with its own directions, the code of a shared network, the code of
-principal components, the fit that goes on from that (pbnbrdf fit --prior), and the fit that knows no other
-material. The files of --measured are measured at as many of their own directions, the nearest ones.
+Of the database each --hold_out-th material is left out. It is then measured at few directions, --counts
+of them, as planned (pbnbrdf plan), and in a single scan: light from 45 degrees, seen in the plane of
+incidence every 5 degrees. Compared are Nielsen's method (2015) with its own directions, the code of a
+shared network, the code of principal components, the fit that goes on from that (pbnbrdf fit --prior),
+and the fit that knows no other material. The files of --measured are measured at as many of their own
+directions, the nearest ones.
 )";
 
 struct Options {
@@ -58,7 +59,7 @@ Fields FieldsOf(Options* o) {
   fields.AddRequired(Text("database", &o->database, "its materials, isotropic: a pattern"));
   fields.Add(Text("measured", &o->measured, "files that are measured at few of their directions"));
   fields.Add(Integer("hold_out", &o->hold_out, AtLeast(2),
-                     "each so-manieth material is held out of the database"));
+                     "every so many materials one is held out of the database"));
   fields.Add(Texts("counts", &o->counts, "numbers of measurements"));
   fields.Add(Integer("components", &o->components, Between(1, TablePca::kMaxComponents),
                      "principal components"));

@@ -49,9 +49,9 @@ inline constexpr char kSourceNotes[] =
   FILE.safetensors             a network that pbnbrdf fit wrote
   FILE.h5, FILE.keras          a network of NBRDF (Sztrajman et al. 2021), weights or a whole model
                                that Keras saved
-  FILE#MATERIAL                a material of a file that holds several, by pbnbrdf prior
   BASEfc1.npy                  the same as NumPy files: BASE and fc1, fc2, fc3, b1, b2 or b3, and
                                .npy
+  FILE#MATERIAL                a material of a file that holds several, by pbnbrdf prior
 )";
 
 }  // namespace pbnbrdf::cli

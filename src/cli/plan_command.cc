@@ -69,8 +69,8 @@ int RunPlan(const PlanCommandOptions& options, const Arguments&) {
 Command PlanCommand() {
   return Command{.name = "plan",
                  .summary = "says which directions to measure, given a database",
-                 .usage = R"(  pbnbrdf plan --prior=merl.prior --count=8
-  pbnbrdf plan --prior=merl.prior --count=8 --material=measured.csv --out=next.csv
+                 .usage = R"(  pbnbrdf plan --prior=merl.pca --count=8
+  pbnbrdf plan --prior=merl.pca --count=8 --material=measured.csv --out=next.csv
 )",
                  .notes = StrCat(kSourceNotes, R"(
 Prints pairs of directions, the one that tells most first. With columns r,g,b of measured values

@@ -45,9 +45,11 @@ Fields PriorFields(PriorOptions* options) {
   fields.AddCommon(Text("summary", &options->summary, "JSON file for the errors of each material"));
   fields.AddCommon(Switch("quiet", &options->quiet, "print nothing"));
   fields.Group("The model");
-  fields.AddCommon(Choice("model", &options->model, kPriorModels,
-                          "network: one whose weights depend on a code; pca: principal components "
-                          "of MERL tables, to compare with"));
+  fields.AddCommon(
+      Choice("model", &options->model, kPriorModels,
+             "network: one whose weights depend on a code, a small file; pca: principal "
+             "components of MERL tables, a large one that says more of a material "
+             "measured at few directions"));
   fields.AddCommon(Integer("code_size", &training->code_size,
                            Between(1, WeightFamily::kMaxCodeSize),
                            "numbers of each material; of each of its channels with pca"));
@@ -186,14 +188,15 @@ Command PriorCommand() {
   return Command{.name = "prior",
                  .summary = "finds what the materials of a database have in common",
                  .usage = R"(  pbnbrdf prior --material='merl/*.binary' --out=merl.prior
-  pbnbrdf prior --model=pca --material='merl/*.binary' --out=merl.pca
+  pbnbrdf prior --model=pca --code_size=64 --material='merl/*.binary' --out=merl.pca
 )",
                  .notes = StrCat(kSourceNotes, R"(
 --material is a pattern, or several separated by semicolons: 'merl/*.binary', 'sgd:parameters.csv#*'.
 
 The file holds the materials, too: merl.prior#NAME is a source of reflectance like any other, and a
-network that pbnbrdf export takes. With --prior=merl.prior, pbnbrdf fit fits a material from few
-measurements, and pbnbrdf plan says which ones tell most. Ctrl-C ends the training with what there is.
+network that pbnbrdf export takes. With --prior=merl.pca, pbnbrdf fit fits a material from few
+measurements, and pbnbrdf plan says which ones tell most. --samples are those of each material.
+Ctrl-C ends the training with what there is.
 )")}
       .With(PriorFields, RunPrior);
 }

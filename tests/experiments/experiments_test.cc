@@ -294,6 +294,30 @@ TEST(Noise, RejectsWhatItCantDo) {
   }
 }
 
+TEST(Prior, ComparesWhatKnowsADatabaseWithWhatDoesNot) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "few.csv",
+             "# isotropic\ntheta_i,phi_i,theta_o,phi_o,value\n0.1,0,0.2,3,0.5\n0.3,0,0.2,2,0.25\n");
+  const ProgramResult run =
+      RunIn(folder, "prior",
+            {"--database=builtin:*-plastic;builtin:*paper;builtin:plastic-laminate", "--hold_out=3",
+             "--counts=4", "--components=3", "--code_size=2", "--training_iterations=3",
+             "--hidden=4", "--encoding=reciprocal", "--samples=500", "--max_seconds=0.3",
+             "--measured=" + (folder / "few.csv")});
+  ASSERT_EQ(run.status, 0);
+  for (const char* text : {"| Nielsen's method |", "| fit alone |", "| 4 planned ", "| scan ",
+                           "| few ", "| 16 of a file |"}) {
+    EXPECT_THAT(run.output, HasSubstr(text));
+  }
+  EXPECT_EQ(Read(folder / "results/prior.md"), run.output);
+}
+
+TEST(Prior, RejectsWhatItCantDo) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(RunIn(folder, "prior", {}).status, 1);
+  EXPECT_EQ(RunIn(folder, "prior", {"--database=builtin:*-plastic", "--counts=x"}).status, 1);
+}
+
 constexpr char kStabilityHeader[] =
     "run,material,stress,solver,loss,terms,encoding,precision,activation,initialization,sampling,"
     "seed,outcome,message,non_finite,termination,iterations,restarts,failed_factorizations,"
@@ -346,6 +370,7 @@ TEST(Experiments, HelpNamesTheFlags) {
   const std::map<std::string, std::string> flag_of = {{"ablation", "--chromaticity_weights"},
                                                       {"models", "--lobes"},
                                                       {"noise", "--additive"},
+                                                      {"prior", "--hold_out"},
 #ifdef PBNBRDF_HAS_RENDER
                                                       {"measured", "--left_out"},
                                                       {"picture", "--epochs"},

@@ -7,6 +7,7 @@
 #include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/metrics/brdf_metrics.h"
 #include "pbnbrdf/models/analytic.h"
+#include "pbnbrdf/problem/sampling.h"
 #include "test_util.h"
 
 namespace pbnbrdf {
