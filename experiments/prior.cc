@@ -173,11 +173,13 @@ class Study {
     }
     for (const Subject& subject : held_out_) Measure("scan", subject, {Scan(), Scan(), Scan()});
     if (options_.measured.empty()) return;
+    std::vector<Subject> files;
     for (const std::string& source : ExpandSources(options_.measured)) {
-      const Subject subject = MakeSubject(NameOfSource(source), OpenBrdf(source), options_.samples);
-      for (const int count : {16, 64}) {
-        Measure(StrCat(count, " of a file"), subject, PlansFor(count));
-      }
+      files.push_back(MakeSubject(NameOfSource(source), OpenBrdf(source), options_.samples));
+    }
+    for (const int count : {16, 64}) {
+      const Plans plans = PlansFor(count);
+      for (const Subject& file : files) Measure(StrCat(count, " of a file"), file, plans);
     }
   }
 

@@ -276,7 +276,7 @@ TEST(ScatteredSampling, MeasurementsAtOnePlaceAreInOneSet) {
 TEST(ScatteredSampling, TwoMeasurementsAreEnough) {
   ScatteredData data;
   data.samples = {{{{0, 0, 1}, {0, 0, 1}}, {1, 1, 1}}, {{{0, 0, 1}, {0.6, 0, 0.8}}, {2, 2, 2}}};
-  EXPECT_EQ(Draw(ScatteredBrdf(data), SampleSet::kHeldOut, 1).size(), 1u);
+  EXPECT_EQ(Draw(ScatteredBrdf(data), SampleSet::kHeldOut, 1).size(), 2u);
   EXPECT_EQ(Draw(ScatteredBrdf(data), SampleSet::kTraining, 1).size(), 4000u);
   data.samples.pop_back();
   EXPECT_THAT(ErrorOf([&] { Draw(ScatteredBrdf(data), SampleSet::kTraining, 1); }),
