@@ -45,8 +45,9 @@ FitProblem FamilyProblem();
 // The materials' networks by Gauss and Newton: mean, basis and codes together. The codes begin as the principal
 // components of log(1 + f cos theta_i). In the end each material's code is fitted once more, with the energy term where
 // its directional albedo exceeds 1. The same arguments give the same family to the last bit, whatever the number of
-// threads, unless the time ends it. problem: the encoding, if left open, is that of isotropic materials. Throws
-// Error if the problem or the options are invalid, there are fewer than two materials or next to no data, or the cost isn't finite.
+// threads, unless the time ends it. problem: the encoding, if left open, is what suits the first material. Throws
+// Error if the problem or the options are invalid, there are fewer than two materials or next to no data, or
+// the cost isn't finite.
 TrainedFamily TrainFamily(std::span<const DatabaseMaterial> materials, const FitProblem& problem,
                           const FamilyOptions& options);
 

@@ -11,6 +11,8 @@
 //     Acquisition. ACM TOG 34(6), 2015.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
