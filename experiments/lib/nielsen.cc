@@ -3,9 +3,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
+#include "database/pca_rows.h"
 
 namespace pbnbrdf {
 namespace {
@@ -14,16 +16,6 @@ using Eigen::Index, Eigen::MatrixXd;
 
 constexpr double kEta = 40.0;  // for components scaled by singular values
 constexpr int kMaxRounds = 20;
-
-MatrixXd RowsAt(const TablePca& pca, std::span<const DirectionPair> pairs) {
-  MatrixXd rows(pairs.size(), pca.num_components());
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const std::vector<double> row = pca.RowAt(pairs[n]).components;
-    rows.row(static_cast<Index>(n)) =
-        Eigen::Map<const Eigen::VectorXd>(row.data(), rows.cols()).transpose();
-  }
-  return rows;
-}
 
 // Of as many components as there are rows.
 double ConditionNumber(const MatrixXd& all, const std::vector<Index>& chosen) {
@@ -96,18 +88,9 @@ std::vector<DirectionPair> NielsenDirections(const TablePca& pca,
 }
 
 std::vector<double> NielsenCode(const TablePca& pca, std::span<const BrdfSample> samples) {
-  std::vector<DirectionPair> pairs;
-  for (const BrdfSample& sample : samples) pairs.push_back(sample.pair);
-  const Index used = std::min<Index>(static_cast<Index>(samples.size()), pca.num_components());
-  const MatrixXd rows = RowsAt(pca, pairs).leftCols(used);
-  MatrixXd rests(samples.size(), 3);
-  for (std::size_t n = 0; n < samples.size(); ++n) {
-    const double mean = pca.RowAt(pairs[n]).mean;
-    for (std::size_t c = 0; c < 3; ++c) {
-      rests(static_cast<Index>(n), static_cast<Index>(c)) =
-          pca.Mapped(pairs[n], samples[n].value[c]) - mean;
-    }
-  }
+  const auto [all, rests] = LinearSamplesOf(pca, samples);
+  const Index used = std::min(all.rows(), all.cols());
+  const MatrixXd rows = all.leftCols(used);
   // Our components are theirs divided by the root of the number of observations.
   MatrixXd normal = rows.transpose() * rows;
   normal.diagonal().array() += kEta / (3.0 * static_cast<double>(pca.members().size()));

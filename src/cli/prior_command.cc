@@ -170,8 +170,11 @@ int RunPrior(const PriorOptions& options, const Arguments&) {
   CheckOutputs(outputs);
   CatchInterrupt();
   const std::vector<DatabaseMaterial> materials = OpenAll(options.material);
-  const Made made = options.model == PriorModel::kPca ? MakePca(options, materials)
-                                                      : MakeNetwork(options, materials);
+  Made made;
+  WithThreads(options.training.threads, [&] {
+    made = options.model == PriorModel::kPca ? MakePca(options, materials)
+                                             : MakeNetwork(options, materials);
+  });
   if (!options.summary.empty()) {
     WriteFile(options.summary,
               JsonText(SummaryJson(options, materials, made.seconds, made.measured)));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "database/code_minimizer.h"
+#include "database/pca_rows.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
@@ -62,27 +63,6 @@ MatrixXd CodesOf(const TablePca& pca) {
   return codes;
 }
 
-struct LinearSamples {
-  MatrixXd rows;   // N x K: by what a code is multiplied
-  MatrixXd rests;  // N x 3: the mapped values without the mean
-};
-
-LinearSamples RowsOf(const TablePca& pca, std::span<const BrdfSample> samples) {
-  LinearSamples linear = {MatrixXd(samples.size(), pca.num_components()),
-                          MatrixXd(samples.size(), 3)};
-  for (std::size_t n = 0; n < samples.size(); ++n) {
-    const auto row = static_cast<Index>(n);
-    const auto& [pair, value, weight] = samples[n];
-    const auto [mean, components] = pca.RowAt(pair);
-    linear.rows.row(row) =
-        Eigen::Map<const VectorXd>(components.data(), pca.num_components()).transpose();
-    for (std::size_t c = 0; c < 3; ++c) {
-      linear.rests(row, static_cast<Index>(c)) = pca.Mapped(pair, value[c]) - mean;
-    }
-  }
-  return linear;
-}
-
 // Of one channel.
 VectorXd ExpectedCode(const MatrixXd& codes, const MatrixXd& rows, const VectorXd& rest,
                       double width, double noise) {
@@ -121,7 +101,7 @@ std::vector<double> FitCode(const TablePca& pca, std::span<const BrdfSample> sam
                             double noise) {
   if (samples.empty()) Fail("no measurements to find a code from");
   const MatrixXd codes = CodesOf(pca);
-  const auto [rows, rests] = RowsOf(pca, samples);
+  const auto [rows, rests] = LinearSamplesOf(pca, samples);
   const auto widths = static_cast<double>(std::size(kWidths));
   MatrixXd found = MatrixXd::Zero(pca.num_components(), 3);
   for (Index c = 0; c < 3; ++c) {

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "database/greedy_design.h"
+#include "database/pca_rows.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/network/neural_brdf.h"
@@ -89,17 +90,6 @@ std::vector<DirectionPair> PairsOf(std::span<const BrdfSample> samples) {
   std::vector<DirectionPair> pairs;
   for (const BrdfSample& sample : samples) pairs.push_back(sample.pair);
   return pairs;
-}
-
-MatrixXd RowsAt(const TablePca& pca, const std::vector<DirectionPair>& pairs) {
-  MatrixXd rows(pairs.size(), pca.num_components());
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const std::vector<double> row = pca.RowAt(pairs[n]).components;
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      rows(static_cast<Index>(n), static_cast<Index>(k)) = row[k];
-    }
-  }
-  return rows;
 }
 
 std::vector<DirectionPair> Chosen(const std::vector<LinearModel>& models,

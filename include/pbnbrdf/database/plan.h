@@ -33,8 +33,8 @@ std::vector<DirectionPair> PlanDirections(const WeightFamily& family,
                                           std::span<const BrdfSample> measured,
                                           const PlanOptions& options);
 
-// The same by principal components, whose mapped values are linear in the code: what was measured matters only by
-// where.
+// The same by principal components. The error is that of the mapped values (table_pca.h), which are linear in the
+// code: what was measured matters only by where.
 std::vector<DirectionPair> PlanDirections(const TablePca& pca, std::span<const BrdfSample> measured,
                                           const PlanOptions& options);
 

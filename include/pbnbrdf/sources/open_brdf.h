@@ -11,9 +11,10 @@ namespace pbnbrdf {
 
 // "sgd:PARAMETERS.csv#MATERIAL" (models/sgd.h), "builtin:NAME" (models/builtin.h), an analytic model with
 // its parameters, "MODEL:NAME=VALUE,..." (models/analytic.h), "FILE#MATERIAL" of a file that holds several
-// (network/weight_family.h, table_pca.h), or a file in any format that a header of this folder reads. The format of a file is told by its content, not its name. Where no format recognises the
-// content, as of a damaged file, the name's ending decides. Throws Error, which says that no format
-// recognises the file if the name says nothing either.
+// (network/weight_family.h, table_pca.h), or a file in any format that a header of this folder reads. The format
+// of a file is told by its content, not its name. Where no format recognises the content, as of a damaged file, the
+// name's ending decides. Throws Error, which says that no format recognises the file if the name says nothing
+// either.
 std::unique_ptr<Brdf> OpenBrdf(const std::string& source);
 
 // A fitted network, one of a database, "FILE.prior#MATERIAL", or one that Sztrajman et al. published: "FILE.h5",
