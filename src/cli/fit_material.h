@@ -15,7 +15,7 @@ namespace pbnbrdf::cli {
 struct FitRequest {
   MaterialOptions material;
   std::string init;   // a network to start from, or ""
-  std::string prior;  // what a database has in common (WeightFamily), or ""
+  std::string prior;  // what a database has in common (sources/collection_file.h), or ""
   FitSetup setup;
 };
 
