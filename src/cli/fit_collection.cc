@@ -50,17 +50,24 @@ struct Entry {
   Json summary = {};     // of the fit, if there is one
 };
 
+// Of what all the fits start from.
+std::string FingerprintOfStart(const FitRequest& request) {
+  std::string text;
+  for (const std::string& file : {request.init, request.prior}) {
+    if (!file.empty()) text += StrCat(SourceFingerprint(file), " ");
+  }
+  return text;
+}
+
 // Of all that a fit depends on; the number of threads isn't part of it.
-std::string FingerprintOf(const FitRequest& request) {
+std::string FingerprintOf(const FitRequest& request, const std::string& start) {
   FitRequest copy = request;
   Fingerprint fingerprint;
   fingerprint.Add(PBNBRDF_VERSION);
   fingerprint.Add(SubjectFields(&copy).Lines());
   fingerprint.Add(ProblemText(request.setup));
   fingerprint.Add(StrCat(SourceFingerprint(request.material.source)));
-  for (const std::string& file : {request.init, request.prior}) {
-    if (!file.empty()) fingerprint.Add(StrCat(SourceFingerprint(file)));
-  }
+  fingerprint.Add(start);
   std::ostringstream text;
   text << std::hex << std::setw(16) << std::setfill('0') << fingerprint.value();
   return text.str();
@@ -107,7 +114,10 @@ std::string CsvField(const Json& value) {
 class Collection {
  public:
   Collection(const FitRequest& request, const CollectionOptions& options)
-      : request_(request), options_(options), entries_(EntriesOf(request.material.source)) {
+      : request_(request),
+        options_(options),
+        entries_(EntriesOf(request.material.source)),
+        start_(FingerprintOfStart(request)) {
     if (!options.only.empty()) entries_ = Chosen(entries_, options.only);
   }
 
@@ -162,7 +172,7 @@ class Collection {
     FitRequest request = request_;
     request.material.source = entry->source;
     request.setup.options.threads = threads_;
-    const std::string fingerprint = FingerprintOf(request);
+    const std::string fingerprint = FingerprintOf(request, start_);
     if (std::optional<Json> summary = Kept(entry->name, fingerprint)) {
       entry->state = State::kKept;
       entry->summary = std::move(*summary);
@@ -283,6 +293,7 @@ class Collection {
   const FitRequest& request_;
   const CollectionOptions& options_;
   std::vector<Entry> entries_;
+  const std::string start_;
   const Timer timer_;
   const ProgressLine line_{options_.quiet};
   int threads_ = 1;

@@ -45,11 +45,11 @@ MaterialFitter::MaterialFitter(const FitRequest& request)
       problem_(request.setup.problem),
       options_(request.setup.options) {
   if (!request.prior.empty()) {
-    const Collection prior = ReadCollection(request.prior);
+    const auto prior = ReadCollection(request.prior);
     About(request.material.source, [&] {
       std::visit(
           [&](const auto& known) { StartFromPrior(known, *material_, &problem_, &options_); },
-          prior);
+          *prior);
     });
   }
   if (!request.init.empty()) {

@@ -52,14 +52,14 @@ std::string PlanCsv(const std::vector<DirectionPair>& pairs) {
 
 int RunPlan(const PlanCommandOptions& options, const Arguments&) {
   CheckOutputs({{"out", options.out}});
-  const Collection prior = ReadCollection(options.prior);
+  const auto prior = ReadCollection(options.prior);
   std::vector<BrdfSample> measured;
   if (!options.material.source.empty()) {
     measured = options.material.Open()->Measurements();
     if (measured.empty()) Fail(options.material.source, ": isn't a list of measurements");
   }
   const std::vector<DirectionPair> pairs = std::visit(
-      [&](const auto& known) { return PlanDirections(known, measured, options.plan); }, prior);
+      [&](const auto& known) { return PlanDirections(known, measured, options.plan); }, *prior);
   WriteFile(options.out, PlanCsv(pairs));
   return 0;
 }

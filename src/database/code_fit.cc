@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "database/code_minimizer.h"
+#include "database/lobe_codes.h"
 #include "database/pca_rows.h"
 #include "pbnbrdf/base/error.h"
 
@@ -18,6 +19,7 @@ constexpr std::size_t kStarts = 4;  // members, besides the mean
 // Of principal components: how far a material may be from those that it resembles, in mapped values; the weight of
 // those that it doesn't resemble.
 constexpr double kWidths[] = {0.25, 0.5, 1.0}, kLeastWeight = 1e-3;
+constexpr double kLobesWeight = 5.0 / 3.0;  // of all of them, members' channels being 1
 
 FitProblem ProblemOf(const WeightFamily& family, double noise) {
   FitProblem problem;
@@ -51,29 +53,40 @@ std::vector<std::vector<double>> StartsOf(const WeightFamily& family, double rid
   return codes;
 }
 
-// A column for each channel of each member.
-MatrixXd CodesOf(const TablePca& pca) {
-  const Index size = pca.num_components();
-  MatrixXd codes(size, 3 * pca.members().size());
+// What a channel may resemble.
+struct Examples {
+  MatrixXd codes;    // a column each
+  VectorXd weights;  // before anything is measured
+};
+
+// The channels of the members, and lobes.
+Examples ExamplesOf(const TablePca& pca) {
+  const Index size = pca.num_components(), channels = 3 * static_cast<Index>(pca.members().size());
+  const MatrixXd lobes = LobeCodes(pca);
+  Examples examples = {MatrixXd(size, channels + lobes.cols()), VectorXd(channels + lobes.cols())};
   Index column = 0;
   for (const DatabaseMember& member : pca.members()) {
-    codes.middleCols(column, 3) = Eigen::Map<const MatrixXd>(member.code.data(), size, 3);
+    examples.codes.middleCols(column, 3) = Eigen::Map<const MatrixXd>(member.code.data(), size, 3);
     column += 3;
   }
-  return codes;
+  examples.codes.rightCols(lobes.cols()) = lobes;
+  examples.weights.head(channels).setConstant(1.0 / static_cast<double>(channels));
+  examples.weights.tail(lobes.cols()).setConstant(kLobesWeight / static_cast<double>(lobes.cols()));
+  return examples;
 }
 
 // Of one channel.
-VectorXd ExpectedCode(const MatrixXd& codes, const MatrixXd& rows, const VectorXd& rest,
+VectorXd ExpectedCode(const Examples& examples, const MatrixXd& rows, const VectorXd& rest,
                       double width, double noise) {
-  const MatrixXd misses = (rows * codes).colwise() - rest;
+  const MatrixXd misses = (rows * examples.codes).colwise() - rest;
   const VectorXd distances = misses.colwise().squaredNorm() / static_cast<double>(rest.size());
   VectorXd weights =
       ((distances.minCoeff() - distances.array()) / (2.0 * width * width)).exp() + kLeastWeight;
+  weights.array() *= examples.weights.array();
   weights /= weights.sum();
-  const VectorXd mean = codes * weights;
-  const MatrixXd scaled =
-      (codes.colwise() - mean) * weights.cwiseSqrt().asDiagonal();  // its square: the covariance
+  const VectorXd mean = examples.codes * weights;
+  const MatrixXd scaled = (examples.codes.colwise() - mean) *
+                          weights.cwiseSqrt().asDiagonal();  // its square: the covariance
   const MatrixXd reach = rows * scaled;
   MatrixXd covariance = reach * reach.transpose();
   covariance.diagonal().array() += noise * noise;
@@ -100,13 +113,13 @@ std::vector<double> FitCode(const WeightFamily& family, std::span<const BrdfSamp
 std::vector<double> FitCode(const TablePca& pca, std::span<const BrdfSample> samples,
                             double noise) {
   if (samples.empty()) Fail("no measurements to find a code from");
-  const MatrixXd codes = CodesOf(pca);
+  const Examples examples = ExamplesOf(pca);
   const auto [rows, rests] = LinearSamplesOf(pca, samples);
   const auto widths = static_cast<double>(std::size(kWidths));
   MatrixXd found = MatrixXd::Zero(pca.num_components(), 3);
   for (Index c = 0; c < 3; ++c) {
     for (const double width : kWidths) {
-      found.col(c) += ExpectedCode(codes, rows, rests.col(c), width, noise) / widths;
+      found.col(c) += ExpectedCode(examples, rows, rests.col(c), width, noise) / widths;
     }
   }
   return {found.data(), found.data() + found.size()};

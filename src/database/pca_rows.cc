@@ -19,10 +19,10 @@ LinearSamples LinearSamplesOf(const TablePca& pca, std::span<const BrdfSample> s
   for (const BrdfSample& sample : samples) pairs.push_back(sample.pair);
   MatrixXd rests(samples.size(), 3);
   for (std::size_t n = 0; n < samples.size(); ++n) {
-    const double mean = pca.RowAt(pairs[n]).mean;
+    const TablePca::Row row = pca.RowAt(pairs[n]);
     for (std::size_t c = 0; c < 3; ++c) {
       rests(static_cast<Index>(n), static_cast<Index>(c)) =
-          pca.Mapped(pairs[n], samples[n].value[c]) - mean;
+          row.Mapped(samples[n].value[c]) - row.mean;
     }
   }
   return {RowsAt(pca, pairs), std::move(rests)};

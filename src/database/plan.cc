@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "database/even_pairs.h"
 #include "database/greedy_design.h"
 #include "database/pca_rows.h"
 #include "pbnbrdf/base/error.h"
-#include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
@@ -20,20 +20,6 @@ constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
 constexpr std::size_t kMembers = 16;  // of a database, that a plan is good for in the mean
 constexpr double kDifference = 0.05;  // of a code's number, for derivatives
 constexpr std::size_t kGoals = 2000;  // directions at which errors count
-
-// Where errors count: as those of held-out samples, at angles that fill the domain evenly, by the additive recurrence
-// of the three-dimensional golden ratio.
-std::vector<DirectionPair> Goals() {
-  constexpr double kSteps[] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-  std::vector<DirectionPair> pairs;
-  for (int n = 1; pairs.size() < kGoals; ++n) {
-    const auto u = [&](int k) { return std::fmod(n * kSteps[k], 1.0); };
-    const DirectionPair pair = FromAngles(
-        {.theta_h = 0.5 * kPi * u(0), .theta_d = 0.5 * kPi * u(1), .phi_d = 2.0 * kPi * u(2)});
-    if (pair.AboveHorizon()) pairs.push_back(pair);
-  }
-  return pairs;
-}
 
 // log(1 + f cos theta_i), 3 numbers for each pair.
 Eigen::VectorXd LogsAt(const Brdf& brdf, const std::vector<DirectionPair>& pairs) {
@@ -67,7 +53,7 @@ MatrixXd SlopesAt(const WeightFamily& family, const std::vector<double>& code,
 LinearModel ModelAt(const WeightFamily& family, const std::vector<double>& code,
                     const std::vector<DirectionPair>& candidates,
                     const std::vector<DirectionPair>& known) {
-  const MatrixXd goals = SlopesAt(family, code, Goals());
+  const MatrixXd goals = SlopesAt(family, code, EvenPairs(kGoals));
   return {.rows_each = 3,
           .candidates = SlopesAt(family, code, candidates) / kFamilyNoise,
           .known = SlopesAt(family, code, known) / kFamilyNoise,
@@ -149,7 +135,7 @@ std::vector<DirectionPair> PlanDirections(const TablePca& pca, std::span<const B
                                           const PlanOptions& options) {
   Check(options);
   const std::vector<DirectionPair> candidates = CandidatePairs(options);
-  const MatrixXd goals = RowsAt(pca, Goals());
+  const MatrixXd goals = RowsAt(pca, EvenPairs(kGoals));
   const LinearModel model = {.rows_each = 1,
                              .candidates = RowsAt(pca, candidates) / kPcaNoise,
                              .known = RowsAt(pca, PairsOf(measured)) / kPcaNoise,

@@ -1,6 +1,7 @@
 #include "sources/collection_file.h"
 
 #include "base/about.h"
+#include "base/file_memo.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 
@@ -13,6 +14,13 @@ bool Names(std::string_view start, std::string_view format) {
   return start.find(StrCat("\"format\":\"", format, "\"")) != start.npos;
 }
 
+Collection Read(const std::string& path) {
+  const std::string start = ReadStart(path, kStart);
+  if (Names(start, WeightFamily::kFormat)) return WeightFamily::Read(path);
+  if (Names(start, TablePca::kFormat)) return TablePca::Read(path);
+  Fail(path, ": holds no materials by name: it isn't what pbnbrdf prior writes");
+}
+
 }  // namespace
 
 bool LooksLikeCollection(std::string_view start) {
@@ -20,11 +28,9 @@ bool LooksLikeCollection(std::string_view start) {
   return Names(first, WeightFamily::kFormat) || Names(first, TablePca::kFormat);
 }
 
-Collection ReadCollection(const std::string& path) {
-  const std::string start = ReadStart(path, kStart);
-  if (Names(start, WeightFamily::kFormat)) return WeightFamily::Read(path);
-  if (Names(start, TablePca::kFormat)) return TablePca::Read(path);
-  Fail(path, ": holds no materials by name: it isn't what pbnbrdf prior writes");
+std::shared_ptr<const Collection> ReadCollection(const std::string& path) {
+  static FileMemo<Collection> memo;
+  return memo.Get(path, Read);
 }
 
 std::vector<std::string> MaterialNames(const std::string& path) {
@@ -34,18 +40,18 @@ std::vector<std::string> MaterialNames(const std::string& path) {
         for (const DatabaseMember& member : collection.members()) names.push_back(member.name);
         return names;
       },
-      ReadCollection(path));
+      *ReadCollection(path));
 }
 
 std::unique_ptr<Brdf> OpenMaterial(const std::string& path, const std::string& name) {
-  const Collection collection = ReadCollection(path);
+  const auto collection = ReadCollection(path);
   return About(path, [&] {
     return std::visit(
         [&](const auto& known) -> std::unique_ptr<Brdf> {
           auto material = known.Material(name);
           return std::make_unique<decltype(material)>(std::move(material));
         },
-        collection);
+        *collection);
   });
 }
 

@@ -19,8 +19,9 @@ using Collection = std::variant<WeightFamily, TablePca>;
 // From the first bytes of a file, a kilobyte or more.
 bool LooksLikeCollection(std::string_view start);
 
-// These throw Error, also if the file is no collection.
-Collection ReadCollection(const std::string& path);
+// These throw Error, also if the file is no collection. The last file that was read stays in memory: a file's
+// materials are mostly wanted one after the other, and a file of principal components has hundreds of MB.
+std::shared_ptr<const Collection> ReadCollection(const std::string& path);
 std::vector<std::string> MaterialNames(const std::string& path);
 std::unique_ptr<Brdf> OpenMaterial(const std::string& path, const std::string& name);
 

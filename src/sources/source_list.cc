@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "base/file_memo.h"
 #include "base/hash.h"
 #include "base/text.h"
 #include "pbnbrdf/base/error.h"
@@ -22,6 +23,12 @@ namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
 constexpr std::string_view kBuiltin = "builtin:", kSgd = "sgd:";
+
+std::uint64_t FingerprintOfFile(const std::string& path) {
+  Fingerprint fingerprint;
+  fingerprint.Add(ReadFile(path, kMaxFileBytes));
+  return fingerprint.value();
+}
 
 bool IsPattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
 
@@ -118,8 +125,9 @@ std::uint64_t SourceFingerprint(const std::string& source) {
   Fingerprint fingerprint;
   fingerprint.Add(source);
   if (source.starts_with(kBuiltin) || NamesAnalyticModel(source)) return fingerprint.value();
+  static FileMemo<std::uint64_t> memo;  // the materials of one file come one after the other
   for (const std::string& file : FilesReadWith(SourceParts(source).file)) {
-    fingerprint.Add(ReadFile(file, kMaxFileBytes));
+    fingerprint.Add(StrCat(*memo.Get(file, FingerprintOfFile), " "));
   }
   return fingerprint.value();
 }

@@ -96,28 +96,27 @@ MerlBrdf TablePca::Material(const std::string& name) const {
   return At(FindMember(members_, name).code);
 }
 
+// Between those of the eight bins around the pair that are above the horizon; 0 if there are none.
 TablePca::Row TablePca::RowAt(const DirectionPair& pair) const {
-  Row row = {Interpolated(mean_, pair), {}};
-  for (std::size_t k = 0; k < static_cast<std::size_t>(num_components_); ++k) {
-    const auto component = std::span(components_).subspan(k * bins_.size(), bins_.size());
-    row.components.push_back(Interpolated(component, pair));
+  Row row = {Cosines(pair), 0.0, 0.0,
+             std::vector<double>(static_cast<std::size_t>(num_components_))};
+  const auto corners = CornersOf({}, pair);
+  const auto is_used = [&](std::size_t bin, double weight) {
+    return weight > 0.0 && place_[bin] >= 0;
+  };
+  double total = 0.0;
+  for (const auto& [bin, weight] : corners) total += is_used(bin, weight) ? weight : 0.0;
+  for (const auto& [bin, weight] : corners) {
+    if (!is_used(bin, weight)) continue;
+    const double part = weight / total;
+    const auto n = static_cast<std::size_t>(place_[bin]);
+    row.median += part * median_[n];
+    row.mean += part * mean_[n];
+    for (std::size_t k = 0; k < row.components.size(); ++k) {
+      row.components[k] += part * components_[k * bins_.size() + n];
+    }
   }
   return row;
-}
-
-double TablePca::Mapped(const DirectionPair& pair, double f) const {
-  return Mapped(f, Interpolated(median_, pair), Cosines(pair));
-}
-
-// Between those of the eight bins around the pair that are above the horizon; 0 if there are none.
-double TablePca::Interpolated(std::span<const float> values, const DirectionPair& pair) const {
-  double sum = 0.0, total = 0.0;
-  for (const auto& [bin, weight] : CornersOf({}, pair)) {
-    if (weight <= 0.0 || place_[bin] < 0) continue;
-    sum += weight * values[static_cast<std::size_t>(place_[bin])];
-    total += weight;
-  }
-  return total > 0.0 ? sum / total : 0.0;
 }
 
 }  // namespace pbnbrdf

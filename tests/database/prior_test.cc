@@ -2,6 +2,9 @@
 #include <numeric>
 #include <set>
 
+#include "database/even_pairs.h"
+#include "database/lobe_codes.h"
+#include "database/pca_rows.h"
 #include "database/small_database.h"
 #include "pbnbrdf/brdf/scattered.h"
 #include "pbnbrdf/database/plan.h"
@@ -105,6 +108,23 @@ TEST(FitCode, ComponentsFindAMemberAgain) {
     pairs.push_back(MerlBrdf::CornerPair(bins[n]));
   const MerlBrdf found = Pca().At(FitCode(Pca(), SamplesAt(table, pairs), /*noise=*/0.01));
   EXPECT_LT(ErrorOfFit(table, found), 0.003);
+}
+
+TEST(LobeCodes, AreNearerToTheirLobesThanTheMeanIs) {
+  const Eigen::MatrixXd codes = LobeCodes(Pca());
+  ASSERT_EQ(codes.cols(), 400);
+  const std::vector<DirectionPair> pairs = EvenPairs(500);
+  for (const int k : {0, 17, 399}) {
+    const auto [rows, rests] = LinearSamplesOf(Pca(), SamplesAt(Lobe(k), pairs));
+    const double distance = (rows * codes.col(k) - rests.col(0)).norm();
+    EXPECT_LT(distance, 0.9 * rests.col(0).norm()) << k;
+  }
+}
+
+TEST(FitCode, AMaterialLikeAFormulaIsFoundThoughNoMemberIsLikeIt) {
+  const LambertBrdf soot({0.02, 0.02, 0.02});  // members alone: an error of 0.013
+  const MerlBrdf found = Pca().At(FitCode(Pca(), SamplesAt(soot, EvenPairs(8))));
+  EXPECT_LT(ErrorOfFit(soot, found), 0.009);
 }
 
 TEST(FitCode, NoMeasurementsAreAnError) {

@@ -32,7 +32,7 @@ TEST(TablePca, TheTableOfACodeHasTheMappedValuesThatRowsSay) {
     const Rgb value = ValueAt(gold, pair);
     const double codes[3][2] = {{1, 0}, {0, 1}, {-1, 0.5}};
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(pca.Mapped(pair, value[c]),
+      EXPECT_NEAR(row.Mapped(value[c]),
                   row.mean + codes[c][0] * row.components[0] + codes[c][1] * row.components[1],
                   1e-6);
     }
@@ -40,11 +40,10 @@ TEST(TablePca, TheTableOfACodeHasTheMappedValuesThatRowsSay) {
 }
 
 TEST(TablePca, MappedIsTheFormula) {
-  const TablePca pca = Pca();
-  const DirectionPair pair = {FromSpherical(0.3, 0.0), FromSpherical(0.7, 2.0)};
+  const TablePca::Row row = Pca().RowAt({FromSpherical(0.3, 0.0), FromSpherical(0.7, 2.0)});
   const double w = std::cos(0.3) * std::cos(0.7);
-  EXPECT_NEAR(pca.Mapped(pair, 0.5), std::log((0.5 * w + 1e-3) / (0.3 * w + 1e-3)), 1e-6);
-  EXPECT_NEAR(pca.Mapped(pair, -0.5), std::log(1e-3 / (0.3 * w + 1e-3)), 1e-6);
+  EXPECT_NEAR(row.Mapped(0.5), std::log((0.5 * w + 1e-3) / (0.3 * w + 1e-3)), 1e-6);
+  EXPECT_NEAR(row.Mapped(-0.5), std::log(1e-3 / (0.3 * w + 1e-3)), 1e-6);
 }
 
 TEST(TablePca, FilesRoundTrip) {

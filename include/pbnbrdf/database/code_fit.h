@@ -25,7 +25,8 @@ std::vector<double> FitCode(const WeightFamily& family, std::span<const BrdfSamp
 
 // The expected code of principal components, 3 K numbers, by Gaussian process regression [1] channel by channel, the
 // mapped values' noise having the standard deviation `noise`. Materials are like those that they resemble: the codes'
-// mean and covariance are taken over the members' channels, each weighted by
+// mean and covariance are taken over the members' channels and, for what is like a formula and like no member, over 400
+// lobes of microfacet models above diffuse grounds. Each is weighted by
 //
 //   exp(-d / (2 h^2)),  d: the mean squared distance of its mapped values from the samples',
 //

@@ -49,25 +49,23 @@ class TablePca {
   // That of a member. Throws Error, which has the nearest name, if there is none of that name.
   MerlBrdf Material(const std::string& name) const;
 
-  // At a pair between the corners of bins, the right side of the equation above: interpolated.
+  // At a pair between the corners of bins, the right side of the equation above, interpolated, and what its left
+  // side needs besides f.
   struct Row {
-    double mean;
+    double cosines, median, mean;
     std::vector<double> components;  // K
+
+    double Mapped(double f) const { return TablePca::Mapped(f, median, cosines); }
   };
   Row RowAt(const DirectionPair& pair) const;
 
-  // The left side at a pair, of a value f (1/sr).
-  double Mapped(const DirectionPair& pair, double f) const;
-
-  // The same of a bin whose median is known.
+  // The left side, of a value f (1/sr).
   static double Mapped(double f, double median, double cosines) {
     const double w = std::max(cosines, kOffset);
     return std::log((std::max(f, 0.0) * w + kOffset) / (median * w + kOffset));
   }
 
  private:
-  double Interpolated(std::span<const float> values, const DirectionPair& pair) const;
-
   int num_components_;
   std::vector<std::size_t> bins_;
   std::vector<int> place_;  // of each bin of a table in bins_, or -1
