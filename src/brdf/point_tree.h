@@ -18,7 +18,7 @@ class PointTree {
   };
 
   // Of finite points.
-  explicit PointTree(std::vector<Point> points);
+  explicit PointTree(const std::vector<Point>& points);
 
   // The `count` points nearest to `at`, or all if there are fewer, the nearest first; of equally near
   // ones those with a lower index.
@@ -27,11 +27,15 @@ class PointTree {
  private:
   struct Search;
 
-  void Build(std::size_t begin, std::size_t end, int axis);
+  void Build(const std::vector<Point>& points, std::size_t begin, std::size_t end, int axis);
   void Visit(std::size_t begin, std::size_t end, int axis, Search* search) const;
+  void Offer(std::size_t place, Search* search) const;
 
-  std::vector<Point> points_;       // in the order given
-  std::vector<std::size_t> order_;  // the median of each range parts it, axis after axis
+  static constexpr std::size_t kLeaf = 8;  // points at most that aren't parted
+
+  // The median of each range of places parts it, axis after axis.
+  std::vector<Point> points_;
+  std::vector<std::size_t> order_;  // which of the points given each is
 };
 
 }  // namespace pbnbrdf

@@ -17,11 +17,12 @@ namespace pbnbrdf {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Of incidence, for the albedo of a material: nearer to the horizon measurements have no data, and models
-// are wrong.
-constexpr double kMaxMaterialAngle = 85.0 * kDegree;
+// For the albedos of a material. Nearer to the horizon than 85 degrees measurements have no data, and models are
+// wrong. What is interpolated has kinks, of which many digits take minutes; three are enough.
+constexpr AlbedoGrid kMaterialGrid = {
+    .angles = 30, .last_angle = 85.0 * kDegree, .tolerance = 1e-3, .refinements = 2};
 constexpr std::size_t kTrialSamples = 500;  // to see how long one takes
-constexpr double kAlbedoValues = 1e6;       // about what the albedos of a material take
+constexpr double kAlbedoValues = 1e5;       // about what the albedos of a material take
 constexpr double kMinSamples = 5000.0;
 // How often the material and the fit are evaluated for each held-out sample, and the part of the time for that.
 constexpr double kEvaluations = 3.0, kErrorsPart = 0.4;
@@ -148,7 +149,7 @@ Json MeasureFit(const Brdf& material, const Brdf& fit, std::size_t parameters,
   const Energy energy = options.profile.empty() ? MeasureEnergy(fit) : EnergyOf(options.profile);
   Energy of_material;
   if (allowance.material_albedo) {
-    of_material = MeasureEnergy(material, {.last_angle = kMaxMaterialAngle});
+    of_material = MeasureEnergy(material, kMaterialGrid);
   }
   const auto at_measured = MovedToMeasured(material, heldout);
   const Coverage coverage = MeasureCoverage(material);
