@@ -48,6 +48,7 @@ struct Entry {
   State state = State::kWaiting;
   std::string why = {};  // it failed
   Json summary = {};     // of the fit, if there is one
+  double seconds = 0.0;  // to open, fit and measure it in this run
 };
 
 // Of what all the fits start from.
@@ -179,7 +180,10 @@ class Collection {
       return;
     }
     WithThreads(threads_, [&] {
-      FittedMaterial fitted = FitOpened(request);
+      const Timer timer;
+      FittedMaterial fitted = MaterialFitter(request).Run(
+          /*reports_heldout_error=*/false, [](const FitProgress&) { return !Interrupted(); });
+      entry->seconds = timer.Seconds();
       if (fitted.fit.summary.termination == Termination::kInterrupted) return;
       fitted.subject.fingerprint = fingerprint;
       entry->summary = FitSummaryJson(fitted.fit, fitted.subject, fitted.measures);
@@ -189,16 +193,6 @@ class Collection {
           .Write(File(entry->name, ".safetensors"));
       entry->state = State::kFitted;
     });
-  }
-
-  FittedMaterial FitOpened(const FitRequest& request) {
-    std::optional<MaterialFitter> fitter;
-    {
-      const std::lock_guard lock(opening_);  // HDF5 is for one thread at a time
-      fitter.emplace(request);
-    }
-    return fitter->Run(/*reports_heldout_error=*/false,
-                       [](const FitProgress&) { return !Interrupted(); });
   }
 
   // The summary of the fit that the folder has, if it is the same fit.
@@ -250,7 +244,9 @@ class Collection {
     for (const char* measure : kMeasures) csv += StrCat(",", measure);
     csv += "\n";
     Json rows = Json::array();
+    double fit_seconds = 0.0;
     for (const Entry& entry : entries_) {
+      fit_seconds += entry.seconds;
       csv += StrCat(CsvField(entry.name), ",", CsvField(entry.source), ",",
                     NameOf(kStates, entry.state), ",", CsvField(entry.why));
       Json row = {{"name", entry.name},
@@ -265,7 +261,10 @@ class Collection {
       csv += "\n";
       rows.push_back(std::move(row));
     }
-    const Json json = {{"version", PBNBRDF_VERSION}, {"seconds", timer_.Seconds()}, {"fits", rows}};
+    const Json json = {{"version", PBNBRDF_VERSION},
+                       {"seconds", timer_.Seconds()},
+                       {"job_seconds_in_fits", fit_seconds},
+                       {"fits", rows}};
     WriteFiles({{File(kTable, ".csv"), csv}, {File(kTable, ".json"), JsonText(json)}});
   }
 
@@ -298,7 +297,7 @@ class Collection {
   const ProgressLine line_{options_.quiet};
   int threads_ = 1;
   std::atomic<std::size_t> next_ = 0;
-  std::mutex mutex_, opening_;
+  std::mutex mutex_;
   std::map<State, std::size_t> counts_;
 };
 

@@ -24,10 +24,12 @@ class CliFitCollection : public Cli {
 
   std::string Bytes(const std::string& file) const { return ReadFile(Path(file), 1 << 24); }
 
+  json Table() const { return json::parse(Bytes("fits/fits.json")); }
+
   // The states by name.
   std::map<std::string, std::string> States() const {
     std::map<std::string, std::string> states;
-    const json table = json::parse(Bytes("fits/fits.json"));
+    const json table = Table();
     for (const json& fit : table["fits"]) {
       states[fit["name"]] = fit["state"];
     }
@@ -45,6 +47,7 @@ TEST_F(CliFitCollection, KeepsWhatIsThereAndTheSame) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("3 fitted, 0 kept, 0 failed"));
   EXPECT_EQ(States(), (Names{{"a", "fitted"}, {"b", "fitted"}, {"spectralon", "fitted"}}));
+  EXPECT_GT(Table()["job_seconds_in_fits"], 0.0);
   const std::string b = Bytes("fits/b.safetensors");
   // The same as alone.
   ASSERT_EQ(
@@ -54,6 +57,7 @@ TEST_F(CliFitCollection, KeepsWhatIsThereAndTheSame) {
 
   ASSERT_EQ(Run(fit).status, 0);
   EXPECT_EQ(States(), (Names{{"a", "kept"}, {"b", "kept"}, {"spectralon", "kept"}}));
+  EXPECT_EQ(Table()["job_seconds_in_fits"], 0.0);
   WriteMaterial("a.csv", 0.25);
   std::filesystem::remove(Path("fits/spectralon.json"));
   ASSERT_EQ(Run(fit).status, 0);
