@@ -42,8 +42,8 @@ class CliFaults : public Cli {
 
   // Runs the command and sends it the signal after so many seconds.
   void RunUntil(const std::string& signal, double seconds, const std::string& command) const {
-    std::ignore = std::system(StrCat("timeout -s ", signal, " ", seconds, " ", PBNBRDF_PROGRAM, " ",
-                                     command, " > ", Path("log"), " 2>&1")
+    std::ignore = std::system(StrCat("timeout --foreground -s ", signal, " ", seconds, " ",
+                                     PBNBRDF_PROGRAM, " ", command, " > ", Path("log"), " 2>&1")
                                   .c_str());
   }
 

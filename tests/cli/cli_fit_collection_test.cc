@@ -133,8 +133,9 @@ TEST_F(CliFitCollection, KilledAtAnyMomentItGoesOn) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> seconds(0.05, 1.0);
   for (int k = 0; k < 20; ++k) {
-    const std::string killed = StrCat("timeout -s KILL ", seconds(random), " ", PBNBRDF_PROGRAM,
-                                      " ", whole, " > ", Path("log"), " 2>&1");
+    // In the foreground timeout waits until the process is gone.
+    const std::string killed = StrCat("timeout --foreground -s KILL ", seconds(random), " ",
+                                      PBNBRDF_PROGRAM, " ", whole, " > ", Path("log"), " 2>&1");
     std::ignore = std::system(killed.c_str());
   }
   char host[256] = {};
