@@ -14,7 +14,7 @@ namespace pbnbrdf {
 template <typename Value>
 class FileMemo {
  public:
-  // What read(path), a Value, gave or gives. What it throws is thrown on.
+  // What read(path) returns: a Value, read now unless it is there already. Throws what `read` throws.
   template <typename Read>
   std::shared_ptr<const Value> Get(const std::string& path, Read read) {
     const std::lock_guard lock(mutex_);

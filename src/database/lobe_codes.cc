@@ -32,18 +32,15 @@ AnalyticBrdf Lobe(int n) {
 
 MatrixXd LobeCodes(const TablePca& pca) {
   const std::vector<DirectionPair> pairs = EvenPairs(kPairs, kSmallestCosine);
-  std::vector<TablePca::Row> places;
-  for (const DirectionPair& pair : pairs) places.push_back(pca.RowAt(pair));
-  MatrixXd rests(pairs.size(), kLobes);
+  MatrixXd values(pairs.size(), kLobes);
   ParallelFor(kLobes, [&](std::size_t k) {
-    std::vector<Rgb> values(pairs.size());
-    Lobe(static_cast<int>(k)).Evaluate(pairs, values);
+    std::vector<Rgb> colors(pairs.size());
+    Lobe(static_cast<int>(k)).Evaluate(pairs, colors);
     for (std::size_t n = 0; n < pairs.size(); ++n) {
-      rests(static_cast<Index>(n), static_cast<Index>(k)) =
-          places[n].Mapped(values[n][0]) - places[n].mean;
+      values(static_cast<Index>(n), static_cast<Index>(k)) = colors[n][0];
     }
   });
-  const MatrixXd rows = RowsAt(pca, pairs);
+  const auto [rows, rests] = LinearSamplesAt(pca, pairs, values);
   MatrixXd normal = rows.transpose() * rows;
   normal.diagonal().array() += kRidge;
   return normal.llt().solve(rows.transpose() * rests);

@@ -8,14 +8,20 @@
 
 namespace pbnbrdf {
 
-// A row for each pair: by what a channel's code is multiplied. N x K.
-Eigen::MatrixXd RowsAt(const TablePca& pca, std::span<const DirectionPair> pairs);
-
+// rows * code = rests, for the code of each channel.
 struct LinearSamples {
   Eigen::MatrixXd rows;   // N x K
-  Eigen::MatrixXd rests;  // N x 3: the mapped values of each channel without the mean
+  Eigen::MatrixXd rests;  // N x C: the mapped values of each of C channels without the mean
 };
 
+// values: f (1/sr), N x C, a row for each pair.
+LinearSamples LinearSamplesAt(const TablePca& pca, std::span<const DirectionPair> pairs,
+                              const Eigen::MatrixXd& values);
+
+// C = 3.
 LinearSamples LinearSamplesOf(const TablePca& pca, std::span<const BrdfSample> samples);
+
+// The rows alone.
+Eigen::MatrixXd RowsAt(const TablePca& pca, std::span<const DirectionPair> pairs);
 
 }  // namespace pbnbrdf

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd;
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kMembers = 16;  // of a database, that a plan is good for in the mean
 constexpr double kDifference = 0.05;  // of a code's number, for derivatives
 constexpr std::size_t kGoals = 2000;  // directions at which errors count
