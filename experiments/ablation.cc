@@ -20,17 +20,14 @@ namespace pbnbrdf {
 namespace {
 
 const std::string kUsage =
-    R"(ablation: the paper's tables, with and without each of its terms, on our materials; and the error of
-one problem on each material.
+    R"(ablation: the paper's tables, with and without each of its terms, on our materials.
 
   ablation --out_dir=results --sgd=parameters.csv
   ablation --out_dir=results --tables=1,3 builtin:satin-gold metal=gold.binary
-  ablation --out_dir=results --tables=5 --jobs=2 --threads=1 merl/*.binary
 
 Table 1 compares encodings. Table 2 compares fits with and without the energy term, of materials that
 reflect nearly all light. Table 3 compares weights of the chromaticity term. Table 4 is
-problems/pbnbrdf.flags with and without the energy term, on materials as they are and scaled. Table 5
-has one problem, --problem, and lists the materials from the smallest error to the largest.
+problems/pbnbrdf.flags with and without the energy term, on materials as they are and scaled.
 
 The arguments are materials; without any, 16 built-in ones and, with --sgd, 30 of the SGD model. Each
 fit is a row of ablation.csv as soon as it is done; ablation.md has the tables.
@@ -49,7 +46,6 @@ struct Options {
   Base base = Base::kDefault;
   std::vector<std::string> chromaticity_weights = {"0.1", "1"};
   double scale_to_albedo = 0.99;
-  std::string problem;
   std::vector<int> seeds = {1};
   std::optional<int> max_iterations;
   std::optional<std::uint64_t> samples;
@@ -61,7 +57,7 @@ struct Options {
 
 Fields FieldsOf(Options* o) {
   Fields fields;
-  fields.Add(Integers("tables", &o->tables, Between(1, 5), "the tables to make"));
+  fields.Add(Integers("tables", &o->tables, Between(1, 4), "the tables to make"));
   fields.Add(Choice("base", &o->base, kBases,
                     "what tables 2 and 3 add their terms to: default is the default problem, "
                     "reciprocal is problems/reciprocal.flags"));
@@ -70,7 +66,6 @@ Fields FieldsOf(Options* o) {
   fields.Add(Number("scale_to_albedo", &o->scale_to_albedo, Above(0.0),
                     "the largest directional albedo that tables 2 and 4 scale materials to; "
                     "built-in ones are not scaled"));
-  fields.Add(Text("problem", &o->problem, "problem file of table 5; '': the default problem"));
   fields.Add(Integers("seeds", &o->seeds, AtLeast(1), "seeds of the fits"));
   fields.Add(OverridingInteger("max_iterations", &o->max_iterations, AtLeast(0),
                                "iterations of each fit, at most"));
@@ -121,8 +116,6 @@ std::vector<Row> Rows(int table, const Options& options) {
     case 4:
       return {WithWeight("log + chromaticity", all_terms, "energy", 0.0),
               {"log + chromaticity + energy", all_terms}};
-    case 5:
-      return {{"fit", options.problem.empty() ? FitSetup{} : ReadProblem(options.problem)}};
     default:
       break;
   }

@@ -289,38 +289,6 @@ all of its terms against NBRDF):
 )";
 }
 
-// A row for each fit, from the smallest error to the largest, and below them the medians and the worst.
-std::string FitsMarkdown(const Records& fits) {
-  constexpr Column kColumns[] = {{"mean abs log error", "mean_abs_log_error"},
-                                 {"HRL", "hrl"},
-                                 {"HCL", "hcl"},
-                                 {"largest directional albedo", "max_directional_albedo", 1.0, 7}};
-  Records records = fits;
-  std::stable_sort(records.begin(), records.end(),
-                   [](const AblationRecord& a, const AblationRecord& b) {
-                     return a.errors.mean_abs_log_error < b.errors.mean_abs_log_error;
-                   });
-  std::vector<std::string> titles = {"material", "seed", "iterations", "seconds"};
-  std::vector<std::string> median = {"**median**", "", "", ""}, worst = {"**worst**", "", "", ""};
-  for (const auto& [title, measure, scale, digits] : kColumns) {
-    titles.push_back(title);
-    median.push_back(Significant(MedianOfMaterials(records, measure), digits));
-    worst.push_back(Significant(Worst(records, measure), digits));
-  }
-  Table table(titles);
-  for (const AblationRecord& record : records) {
-    std::vector<std::string> row = {record.material, StrCat(record.seed), StrCat(record.iterations),
-                                    Significant(record.seconds, 3)};
-    for (const auto& [title, measure, scale, digits] : kColumns) {
-      row.push_back(Significant(Value(record, measure), digits));
-    }
-    table.Add(row);
-  }
-  table.Add(median);
-  table.Add(worst);
-  return "## Each material\n\n" + table.Markdown() + "\n";
-}
-
 }  // namespace
 
 std::vector<std::string> AblationCsvHeader() {
@@ -345,8 +313,8 @@ bool IsFinite(const AblationRecord& record) {
 }
 
 std::string AblationMarkdown(const Records& records) {
-  std::string (*const kSections[])(const Records&) = {
-      ReciprocityMarkdown, EnergyMarkdown, ChromaticityMarkdown, AllTermsMarkdown, FitsMarkdown};
+  std::string (*const kSections[])(const Records&) = {ReciprocityMarkdown, EnergyMarkdown,
+                                                      ChromaticityMarkdown, AllTermsMarkdown};
   std::string text;
   int table = 0;
   for (const auto& section : kSections) {

@@ -179,9 +179,9 @@ With --out_dir, --material is a pattern, or several separated by semicolons: 'me
 'sgd:parameters.csv#*', 'builtin:*'. OUT_DIR gets NAME.safetensors and NAME.json of each material, a
 table of all, fits.csv and fits.json, and with --report a page, fits.html. Fits that it has are kept
 where material, problem and version are the same, so that a run that was ended goes on. A material
-that fails doesn't stop the others. fits.json says how many seconds the run took, and how many of its
-jobs went into fits. On a cluster each job fits one material, by --only, and a last run makes the
-table: experiments/cluster has a workflow of Snakemake.
+that fails doesn't stop the others. fits.json says how many seconds the run took, and how many its
+jobs spent on fits, all together. On a cluster each job fits one material, by --only, and a last run
+makes the table: experiments/cluster has a workflow of Snakemake.
 )")}
       .With(FitCommandFields, RunFit);
 }
