@@ -111,8 +111,9 @@ run_tests() {
 other_programs='^(package|format|interop_.*|GlslSource\..*)$'
 
 # Tests of what runs in parallel.
-in_parallel='^(Parallel|PerThread|LargestAlbedo|FitAnalytic|EnergyProof|Cases/ObjectiveTest|Objective|EnergyTerm'
-in_parallel="$in_parallel|MinibatchStream|Solvers/EverySolver|FitBrdf|ColorErrors|Coverage|Energy|Lpips|Render"
+in_parallel='^(Parallel|PerThread|FileMemoTest|LargestAlbedo|FitAnalytic|EnergyProof|Cases/ObjectiveTest|Objective'
+in_parallel="$in_parallel|EnergyTerm|MinibatchStream|Solvers/EverySolver|FitBrdf|ColorErrors|Coverage|Energy|Lpips"
+in_parallel="$in_parallel|FamilyStep|GreedyDesign|PrincipalComponents|FitCode|LobeCodes|Plan|TrainFamily|Render"
 in_parallel="$in_parallel|Render/EveryEstimator|Skip|Adaptive|Demand|CliFitCollection|CliFitScene)\."
 
 # What takes minutes each under the thread sanitizer, and under QEMU.

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <thread>
+#include <vector>
 
 #include "pbnbrdf/base/files.h"
 #include "test_util.h"
@@ -45,6 +47,19 @@ TEST_F(FileMemoTest, OnlyTheLastFileIsKept) {
   for (const char* name : {"a", "b"}) WriteFile(folder_ / name, name);
   for (const char* name : {"a", "b", "a"}) EXPECT_EQ(Get(folder_ / name), name);
   EXPECT_EQ(reads_, 3);
+}
+
+TEST_F(FileMemoTest, ThreadsShareOneReading) {
+  const std::string path = folder_ / "a";
+  WriteFile(path, "one");
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&] {
+      for (int k = 0; k < 20; ++k) EXPECT_EQ(Get(path), "one");
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(reads_, 1);
 }
 
 TEST_F(FileMemoTest, WhatCannotBeReadIsAnErrorEachTime) {
