@@ -1,4 +1,4 @@
-// ablation.cc: what each of the paper's terms does, and how well one problem fits many materials.
+// ablation.cc: what each of the paper's terms does.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
