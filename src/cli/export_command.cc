@@ -7,6 +7,7 @@
 #include "model_fit.h"
 #include "pbnbrdf/base/names.h"
 #include "pbnbrdf/export/export.h"
+#include "pbnbrdf/solve/half_weights.h"
 #include "pbnbrdf/sources/open_brdf.h"
 
 namespace pbnbrdf::cli {
@@ -62,12 +63,16 @@ Fields ExportFields(ExportOptions* options) {
   return fields;
 }
 
+bool HoldsNetworks(const ExportFormat& format) {
+  return format.source == ExportSource::kNetwork || format.source == ExportSource::kHalfNetwork;
+}
+
 // Throws UsageError unless either a network is given or, for a table or a model, any source.
 void CheckSource(const ExportOptions& options) {
   const bool has_fit = !options.fit.empty(), has_material = !options.material.source.empty();
   if (has_fit && has_material) throw UsageError("--fit and --material: give one of them only");
   if (has_fit) return;
-  if (options.format->source == ExportSource::kNetwork) {
+  if (HoldsNetworks(*options.format)) {
     throw UsageError(has_material ? StrCat("--format=", options.format->name,
                                            " exports networks only: give one with --fit")
                                   : "--fit is required");
@@ -75,11 +80,9 @@ void CheckSource(const ExportOptions& options) {
   if (!has_material) throw UsageError("--fit or --material is required");
 }
 
-std::vector<FileContent> FilesOf(const Brdf& source, const std::string& what,
-                                 const ExportOptions& options) {
-  const std::string_view format = options.format->name;
-  return About(StrCat(what, ", exported as ", format),
-               [&] { return ExportedFiles(source, format, options.out, options.name); });
+// For what is said of an export, which may itself be on standard output.
+std::ostream& MessagesOf(const ExportOptions& options) {
+  return options.out == "-" ? std::cerr : std::cout;
 }
 
 bool IsPrincipled(const Brdf& source) {
@@ -87,28 +90,51 @@ bool IsPrincipled(const Brdf& source) {
   return model != nullptr && model->model().name == "principled";
 }
 
-// The source, or the nearest model where the format holds models only; that is said.
-std::vector<FileContent> FilesOrNearest(const Brdf& source, const std::string& what,
+std::unique_ptr<Brdf> NearestPrincipled(const Brdf& source, const std::string& what,
                                         const ExportOptions& options) {
-  if (options.format->source != ExportSource::kPrincipled || IsPrincipled(source)) {
-    return FilesOf(source, what, options);
-  }
   Json errors;
-  const AnalyticBrdf nearest = About(what, [&] { return PrincipledFit(source, what, &errors); });
-  std::ostream& out = options.out == "-" ? std::cerr : std::cout;
-  out << "the nearest of its kind to " << what << ": " << nearest.Description() << "\n"
-      << ErrorsText(errors);
-  return FilesOf(nearest, what, options);
+  auto nearest = std::make_unique<AnalyticBrdf>(
+      About(what, [&] { return PrincipledFit(source, what, &errors); }));
+  MessagesOf(options) << "the nearest of its kind to " << what << ": " << nearest->Description()
+                      << "\n"
+                      << ErrorsText(errors);
+  return nearest;
+}
+
+std::unique_ptr<Brdf> Rounded(const NeuralBrdf& network, const std::string& what,
+                              const ExportOptions& options) {
+  HalfWeights rounded = About(what, [&] { return ToHalfWeights(network); });
+  MessagesOf(options) << what << " with weights of half precision: "
+                      << rounded.network.metadata().at("half_precision") << "\n";
+  return std::make_unique<NeuralBrdf>(std::move(rounded.network));
+}
+
+// The source or, where the format doesn't hold it, what is nearest to it; that is said.
+std::unique_ptr<Brdf> OpenForFormat(const ExportOptions& options) {
+  if (options.fit.empty()) {
+    std::unique_ptr<Brdf> source = options.material.Open();
+    if (options.format->source != ExportSource::kPrincipled || IsPrincipled(*source)) return source;
+    return NearestPrincipled(*source, options.material.source, options);
+  }
+  auto network = std::make_unique<NeuralBrdf>(OpenNetwork(options.fit));
+  switch (options.format->source) {
+    case ExportSource::kPrincipled:
+      return NearestPrincipled(*network, options.fit, options);
+    case ExportSource::kHalfNetwork:
+      return Rounded(*network, options.fit, options);
+    default:
+      return network;
+  }
 }
 
 int RunExport(const ExportOptions& options, const Arguments&) {
   CheckSource(options);
   CheckOutputs({{"out", options.out}});
-  if (!options.fit.empty()) {
-    WriteFiles(FilesOrNearest(OpenNetwork(options.fit), options.fit, options));
-  } else {
-    WriteFiles(FilesOrNearest(*options.material.Open(), options.material.source, options));
-  }
+  const std::string& what = options.fit.empty() ? options.material.source : options.fit;
+  const std::unique_ptr<Brdf> source = OpenForFormat(options);
+  WriteFiles(About(StrCat(what, ", exported as ", options.format->name), [&] {
+    return ExportedFiles(*source, options.format->name, options.out, options.name);
+  }));
   return 0;
 }
 
@@ -130,6 +156,10 @@ networks (--fit):
 )",
           FormatsHelp(),
           R"(
+Weights of half precision make a shader's constants half as large; it computes in single precision.
+They are rounded together, so that values mostly change by less than 0.001 (1 + f); by how much is
+printed, and said in the file.
+
 gltf and materialx hold a principled model: one that fit-model wrote, or the nearest to any other
 source. How far it is from that is printed, and said in the file.
 

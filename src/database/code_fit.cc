@@ -23,11 +23,7 @@ constexpr double kLobesWeight = 5.0 / 3.0;  // of all of them, members' channels
 
 FitProblem ProblemOf(const WeightFamily& family, double noise) {
   FitProblem problem;
-  const NetworkShape& shape = family.shape();
-  problem.network.encoding = shape.encoding();
-  problem.network.hidden = shape.hidden();
-  problem.network.activation = shape.activation();
-  problem.network.channels = shape.num_outputs();
+  problem.network = NetworkOptions::Of(family.shape());
   problem.terms.weights = {{"log", 1.0}};
   problem.terms.loss_scale = noise;
   return problem;

@@ -163,6 +163,8 @@ std::string CommentText(const NeuralBrdf& network) {
   std::string text = network.Description();
   const auto material = network.metadata().find("material");
   if (material != network.metadata().end()) text += "; fitted to " + material->second;
+  const auto half = network.metadata().find("half_precision");
+  if (half != network.metadata().end()) text += "; weights of half precision: " + half->second;
   std::replace_if(
       text.begin(), text.end(),
       [](char c) { return c < ' ' || c > '~' || c == '*' || c == '\\' || c == '?'; }, '_');

@@ -119,6 +119,12 @@ constexpr ExportFormat kFormats[] = {
      ExportSource::kNetwork, OfNetwork<OneFile<HlslSource>>},
     {"wgsl", "fn NAME_eval(wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> for WGSL (WebGPU)",
      ExportSource::kNetwork, OfNetwork<OneFile<WgslSource>>},
+    {"glsl_half", "glsl with weights of half precision", ExportSource::kHalfNetwork,
+     OfNetwork<OneFile<GlslHalfSource>>},
+    {"hlsl_half", "hlsl with weights of half precision", ExportSource::kHalfNetwork,
+     OfNetwork<OneFile<HlslHalfSource>>},
+    {"wgsl_half", "wgsl with weights of half precision", ExportSource::kHalfNetwork,
+     OfNetwork<OneFile<WgslHalfSource>>},
     {"mitsuba",
      "FILE.py, which registers the BSDF \"pbnbrdf\" in Mitsuba 3, FILE_weights.safetensors and "
      "FILE_proposal.safetensors, by which it draws directions",

@@ -45,6 +45,12 @@ std::string GlslSource(const NeuralBrdf& network, const std::string& name);
 std::string HlslSource(const NeuralBrdf& network, const std::string& name);
 std::string WgslSource(const NeuralBrdf& network, const std::string& name);
 
+// The same with weights of half precision, two to an integer: half the memory. Computed in single precision. Throws
+// Error also unless all weights are numbers of half precision (solve/half_weights.h).
+std::string GlslHalfSource(const NeuralBrdf& network, const std::string& name);
+std::string HlslHalfSource(const NeuralBrdf& network, const std::string& name);
+std::string WgslHalfSource(const NeuralBrdf& network, const std::string& name);
+
 // A Python file that registers the BSDF "pbnbrdf" in Mitsuba 3 [1] when it is imported after mitsuba.set_variant(),
 // for scalar, LLVM and CUDA variants in RGB, spectral or monochromatic mode. It needs nothing but Mitsuba. It draws
 // directions as ImportanceSampler does. It takes the files `network` and `proposal` (MitsubaProposal) from beside itself,

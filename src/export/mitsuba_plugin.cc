@@ -76,7 +76,7 @@ std::string MitsubaPlugin(const std::string& network, const std::string& proposa
   return FillIn(kMitsubaPluginText,
                 {{"network", BytesLiteral(network)},
                  {"proposal", BytesLiteral(proposal)},
-                 {"tanh_most", FormatNumber(kernels::kTanhMost * kernels::kTanhMost)},
+                 {"tanh_most", FormatNumber(kernels::kTanhMost)},
                  {"tanh_numerator", ListLiteral(kernels::kTanhNumerator)},
                  {"tanh_denominator", ListLiteral(kernels::kTanhDenominator)},
                  {"first_wavelength", FormatNumber(kFirstPrimaryWavelength)},

@@ -61,14 +61,15 @@ def polynomial(x, coefficients):
 
 def tanh(x):
     """Error below 4e-7; cheaper than dr.tanh."""
-    x2 = dr.minimum(x * x, @tanh_most@)
-    ratio = x * polynomial(x2, @tanh_numerator@) / polynomial(x2, @tanh_denominator@)
-    return dr.clip(ratio, -1.0, 1.0)
+    x = dr.clip(x, -@tanh_most@, @tanh_most@)
+    x2 = x * x
+    return x * polynomial(x2, @tanh_numerator@) / polynomial(x2, @tanh_denominator@)
 
 
 def expm1(x):
-    """exp(x) - 1 as 2 sinh(x/2) exp(x/2): no digits are lost near 0."""
-    return 2.0 * dr.sinh(0.5 * x) * dr.exp(0.5 * x)
+    """exp(x) - 1 for x >= 0; by its series where digits would be lost."""
+    series = x * polynomial(x, [1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0])
+    return dr.select(x < 0.25, series, dr.exp(x) - 1.0)
 
 
 def reflectance(z):
@@ -110,12 +111,11 @@ class Network:
         return dr.gather(mi.Float, self.weights, mi.UInt32(number))
 
     def unit(self, x, first):
-        """Of the weights from `first` on. In four sums, none of which waits for the others."""
-        sums = [self.weight(first + len(x))] + 3 * [0.0]
+        """Of the weights from `first` on."""
+        total = self.weight(first + len(x))
         for n, value in enumerate(x):
-            part = 4 * n // len(x)
-            sums[part] = dr.fma(value, self.weight(first + n), sums[part])
-        return (sums[0] + sums[1]) + (sums[2] + sums[3])
+            total = dr.fma(value, self.weight(first + n), total)
+        return total
 
     def __call__(self, wi, wo):
         """Linear RGB in 1/sr. wi to the light, wo to the viewer, both above the horizon."""
@@ -223,21 +223,23 @@ class Proposal:
             index = (number * self.rings + ring) * self.sectors + turned
             cosine += share * cosine_share
             cell += share * (1.0 - cosine_share) * look_up(self.cells, index)
-        per_half_vector = (cell * (self.size / (2.0 * dr.pi * self.log))
-                           / (self.spread + depth))
-        return cosine * wo.z / dr.pi + per_half_vector / (4.0 * dr.dot(wi, half))
+        per_half_vector = cell * (self.size / (2.0 * dr.pi * self.log))
+        return (cosine * wo.z / dr.pi
+                + per_half_vector / ((self.spread + depth) * 4.0 * dr.dot(wi, half)))
 
     def sample(self, wi, sample1, sample2):
         """wo; below the horizon if the facet drawn reflects to there."""
         number, is_turned = mi.UInt32(0), mi.Bool(False)
-        rest, below = mi.Float(0.0), mi.Float(0.0)  # rest: what the choice leaves of sample1, uniform again
+        below, chosen_below, chosen_share = mi.Float(0.0), mi.Float(0.0), mi.Float(0.0)
         for incident, share, turned in self.incident_around(wi):
             chosen = (sample1 >= below) & (share > 0.0)
             number = dr.select(chosen, incident, number)
             is_turned = dr.select(chosen, turned, is_turned)
-            rest = dr.select(chosen, (sample1 - below) / dr.maximum(share, 1e-20), rest)
+            chosen_below = dr.select(chosen, below, chosen_below)
+            chosen_share = dr.select(chosen, share, chosen_share)
             below = below + share
-        is_cosine = rest < look_up(self.cosine_share, number)
+        # What the choice leaves of sample1 is uniform again.
+        is_cosine = sample1 - chosen_below < chosen_share * look_up(self.cosine_share, number)
 
         inside = sample2.x * self.size
         cell = dr.minimum(mi.UInt32(inside), self.size - 1)
@@ -246,8 +248,8 @@ class Proposal:
         other = mi.UInt32(look_up(self.others, number * self.size + cell))
         stays = inside < share
         cell = dr.select(stays, cell, other)
-        inside = dr.select(stays, inside / dr.maximum(share, 1e-20),
-                           (inside - share) / dr.maximum(1.0 - share, 1e-20))
+        inside = (dr.select(stays, inside, inside - share)
+                  / dr.maximum(dr.select(stays, share, 1.0 - share), 1e-20))
         is_other_side = is_turned
         sectors_turn = 2.0 * dr.pi
         if self.azimuths == 1:

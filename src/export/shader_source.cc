@@ -1,3 +1,7 @@
+#include <array>
+#include <cstdio>
+
+#include "base/half.h"
 #include "base/text.h"
 #include "export/code.h"
 #include "export/formats.h"
@@ -22,7 +26,9 @@ struct Dialect {
   std::string_view counter;    // a loop over i from 0
   std::string_view product;    // of a matrix and a vector
   bool by_rows;                // of a matrix's numbers
-  std::string_view greater;    // a > b ? yes : no
+  std::string_view uvec2;
+  std::string_view halves;   // the four numbers of half precision in a uvec2, as a vec4
+  std::string_view greater;  // a > b ? yes : no
 };
 
 constexpr Dialect kGlsl = {
@@ -46,6 +52,8 @@ constexpr Dialect kGlsl = {
     .counter = "int @i@ = 0; @i@ < @count@; ++@i@",
     .product = "@matrix@ * @vector@",
     .by_rows = false,
+    .uvec2 = "uvec2",
+    .halves = "vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y))",
     .greater = "$ > $ ? $ : $"};
 
 constexpr Dialect kHlsl = {
@@ -67,6 +75,10 @@ constexpr Dialect kHlsl = {
     .counter = "int @i@ = 0; @i@ < @count@; ++@i@",
     .product = "mul(@matrix@, @vector@)",
     .by_rows = true,
+    .uvec2 = "uint2",
+    .halves =
+        "float4(f16tof32(bits.x), f16tof32(bits.x >> 16), f16tof32(bits.y), f16tof32(bits.y >> "
+        "16))",
     .greater = "$ > $ ? $ : $"};
 
 constexpr Dialect kWgsl = {
@@ -90,6 +102,11 @@ constexpr Dialect kWgsl = {
     .counter = "var @i@ = 0; @i@ < @count@; @i@++",
     .product = "@matrix@ * @vector@",
     .by_rows = false,
+    .uvec2 = "vec2<u32>",
+    // Not .y of one call: of constants wgpu on Mesa 22.3 took it for 0.
+    .halves =
+        "vec4<f32>(unpack2x16float(bits.x).x, unpack2x16float(bits.x >> 16u).x, "
+        "unpack2x16float(bits.y).x, unpack2x16float(bits.y >> 16u).x)",
     .greater = "@name@_greater($, $, $, $)"};
 
 constexpr std::string_view kSource = R"(// @about@.
@@ -142,7 +159,7 @@ constexpr std::string_view kSource = R"(// @about@.
 
 @real:reflectance:z@ { return @reflectance@; }
 
-@constants@
+@halves@@constants@
 @declaration_begin@ {
   if (!(wi.z > 0.0 && wo.z > 0.0)) { return @vec3@(0.0, 0.0, 0.0); }
   // The six inputs of the network. Exchanging wi and wo only changes the signs of dx and dy.
@@ -197,40 +214,80 @@ std::string EncodeBody(const Dialect& dialect, const Language& language, Encodin
 
 int Quads(int count) { return (count + 3) / 4; }
 
+// How weights are kept: as numbers, or two of half precision to an integer.
+enum class Storage { kSingle, kHalf };
+
+using Quad = std::array<double, 4>;
+
 // The weight of a unit for an input, or its bias for input `in`; 0 where there is no unit or input.
-std::string Weight(const LayerWeights& layer, int unit, int input) {
-  if (unit >= layer.out || input > layer.in) return "0.0";
-  return Literal(SinglePrecision(layer.weight(unit, input)));
+double WeightOrZero(const LayerWeights& layer, int unit, int input) {
+  return unit < layer.out && input <= layer.in ? layer.weight(unit, input) : 0.0;
 }
 
-std::string Bias(const Dialect& dialect, const LayerWeights& layer, int unit) {
-  std::vector<std::string> numbers;
-  for (int i = 0; i < 4; ++i) numbers.push_back(Weight(layer, unit + i, layer.in));
-  return StrCat(dialect.vec4, "(", Join(numbers, ", "), ")");
+// Of the four units from `unit` on.
+Quad Biases(const LayerWeights& layer, int unit) {
+  Quad quad;
+  for (int k = 0; k < 4; ++k) quad[k] = WeightOrZero(layer, unit + k, layer.in);
+  return quad;
 }
 
-// What takes the four values from `input` on to the four units from `unit` on.
-std::string Matrix(const Dialect& dialect, const LayerWeights& layer, int unit, int input) {
-  std::vector<std::string> numbers;
+// What takes the four values from `input` on to the four units from `unit` on: its rows or its columns.
+std::array<Quad, 4> Matrix(const Dialect& dialect, const LayerWeights& layer, int unit, int input) {
+  std::array<Quad, 4> quads;
   for (int n = 0; n < 16; ++n) {
     const int row = dialect.by_rows ? n / 4 : n % 4, column = dialect.by_rows ? n % 4 : n / 4;
-    numbers.push_back(input + column < layer.in ? Weight(layer, unit + row, input + column)
-                                                : "0.0");
+    quads[n / 4][n % 4] =
+        input + column < layer.in ? WeightOrZero(layer, unit + row, input + column) : 0.0;
   }
-  return StrCat(dialect.mat4, "(", Join(numbers, ", "), ")");
+  return quads;
+}
+
+std::string Numbers(const Quad& quad) {
+  std::vector<std::string> numbers;
+  for (const double number : quad) numbers.push_back(Literal(SinglePrecision(number)));
+  return Join(numbers, ", ");
+}
+
+// As an integer, the first number in its low half.
+std::string Halves(double first, double second) {
+  char text[16];
+  std::snprintf(text, sizeof(text), "0x%08xu", HalfBits(first) | HalfBits(second) << 16);
+  return text;
+}
+
+// The elements of an array.
+std::string Element(const Dialect& dialect, Storage storage, const Quad& quad) {
+  if (storage == Storage::kSingle) return StrCat(dialect.vec4, "(", Numbers(quad), ")");
+  return StrCat(dialect.uvec2, "(", Halves(quad[0], quad[1]), ", ", Halves(quad[2], quad[3]), ")");
+}
+
+void AddElements(const Dialect& dialect, Storage storage, const std::array<Quad, 4>& matrix,
+                 std::vector<std::string>* elements) {
+  std::vector<std::string> quads;
+  for (const Quad& quad : matrix) {
+    quads.push_back(storage == Storage::kHalf ? Element(dialect, storage, quad) : Numbers(quad));
+  }
+  if (storage == Storage::kHalf) {
+    elements->insert(elements->end(), quads.begin(), quads.end());
+  } else {
+    elements->push_back(StrCat(dialect.mat4, "(", Join(quads, ", "), ")"));
+  }
 }
 
 // The weights of a layer as constants, row of units by row of units: for each four units their biases, and the
-// matrices that take four values each to them.
-std::string Constants(const Dialect& dialect, const LayerWeights& layer, int l) {
+// matrices that take four values each to them, of half precision as four elements each.
+std::string Constants(const Dialect& dialect, Storage storage, const LayerWeights& layer, int l) {
   const int outs = Quads(layer.out), ins = Quads(layer.in);
   std::vector<std::string> biases, matrices;
   for (int o = 0; o < outs; ++o) {
-    biases.push_back(Bias(dialect, layer, 4 * o));
-    for (int i = 0; i < ins; ++i) matrices.push_back(Matrix(dialect, layer, 4 * o, 4 * i));
+    biases.push_back(Element(dialect, storage, Biases(layer, 4 * o)));
+    for (int i = 0; i < ins; ++i) {
+      AddElements(dialect, storage, Matrix(dialect, layer, 4 * o, 4 * i), &matrices);
+    }
   }
-  const auto array = [&](std::string_view type, const std::string& name,
+  const auto array = [&](std::string_view single, const std::string& name,
                          const std::vector<std::string>& values) {
+    const std::string_view type = storage == Storage::kHalf ? dialect.uvec2 : single;
     return FillIn(dialect.array, {{"type", std::string(type)},
                                   {"array", name},
                                   {"count", StrCat(values.size())},
@@ -240,8 +297,31 @@ std::string Constants(const Dialect& dialect, const LayerWeights& layer, int l) 
          array(dialect.mat4, StrCat("w", l), matrices);
 }
 
+// The biases of the four units of row `row`.
+std::string BiasesAt(Storage storage, int l, const std::string& row) {
+  const std::string element = StrCat("@name@_b", l, "[", row, "]");
+  return storage == Storage::kHalf ? StrCat("@name@_halves(", element, ")") : element;
+}
+
+std::string MatrixAt(const Dialect& dialect, Storage storage, int l, const std::string& index) {
+  const std::string array = StrCat("@name@_w", l);
+  if (storage == Storage::kSingle) return StrCat(array, "[", index, "]");
+  std::vector<std::string> quads;
+  for (int k = 0; k < 4; ++k) {
+    quads.push_back(StrCat("@name@_halves(", array, "[4 * (", index, ") + ", k, "])"));
+  }
+  return StrCat(dialect.mat4, "(", Join(quads, ", "), ")");
+}
+
+// "vec4 NAME_halves(uvec2 bits) { return ...; }"
+std::string HalvesFunction(const Dialect& dialect) {
+  return StrCat("// Four numbers of half precision.\n",
+                Head(dialect, dialect.uvec2, "halves", {"bits"}, dialect.vec4), " { return ",
+                dialect.halves, "; }\n\n");
+}
+
 // x<l+1> from x<l>, or z from the last ones. Loops have variables of their own: those of HLSL live on behind them.
-std::string Pass(const Dialect& dialect, const LayerWeights& layer, int l) {
+std::string Pass(const Dialect& dialect, Storage storage, const LayerWeights& layer, int l) {
   const int outs = Quads(layer.out), ins = Quads(layer.in);
   const std::string i = StrCat("i", l), o = StrCat("o", l);
   const auto loop = [&](const std::string& variable, int count) {
@@ -251,24 +331,35 @@ std::string Pass(const Dialect& dialect, const LayerWeights& layer, int l) {
   // The sum over the inputs, of the row of units at `row` of the matrices.
   const auto add = [&](const std::string& row) {
     return StrCat(loop(i, ins), "z += ",
-                  FillIn(dialect.product, {{"matrix", StrCat("@name@_w", l, "[", row, i, "]")},
+                  FillIn(dialect.product, {{"matrix", MatrixAt(dialect, storage, l, row + i)},
                                            {"vector", StrCat("x", l, "[", i, "]")}}),
                   "; }\n");
   };
-  if (!layer.hidden) return StrCat("  ", dialect.sum, " = @name@_b", l, "[0];\n  ", add(""));
+  if (!layer.hidden)
+    return StrCat("  ", dialect.sum, " = ", BiasesAt(storage, l, "0"), ";\n  ", add(""));
   return StrCat(Variables(dialect, StrCat("x", l + 1), outs), "  ", loop(o, outs), "\n    ",
-                dialect.sum, " = @name@_b", l, "[", o, "];\n    ",
+                dialect.sum, " = ", BiasesAt(storage, l, o), ";\n    ",
                 add(StrCat(ins, " * ", o, " + ")), "    x", l + 1, "[", o,
                 "] = @name@_activate4(z);\n  }\n");
 }
 
-std::string Source(const Dialect& dialect, const NeuralBrdf& fitted, const std::string& name) {
+void CheckHalfWeights(const NeuralBrdf& network) {
+  for (const double weight : network.weights()) {
+    if (weight == NearestHalf(weight)) continue;
+    Fail("weight ", weight,
+         " isn't of half precision: round the network first (solve/half_weights.h)");
+  }
+}
+
+std::string Source(const Dialect& dialect, Storage storage, const NeuralBrdf& fitted,
+                   const std::string& name) {
+  if (storage == Storage::kHalf) CheckHalfWeights(fitted);
   const NeuralBrdf network = fitted.WithRgbOutputs();
   std::string constants, layers;
   int number = 0;
   for (const LayerWeights& layer : network.Layers()) {
-    constants += Constants(dialect, layer, number);
-    layers += Pass(dialect, layer, number++);
+    constants += Constants(dialect, storage, layer, number);
+    layers += Pass(dialect, storage, layer, number++);
   }
   const NetworkShape& shape = network.shape();
   const std::string statement = StrCat("  ", dialect.let, " $ = $;\n");
@@ -309,6 +400,7 @@ std::string Source(const Dialect& dialect, const NeuralBrdf& fitted, const std::
        {"encode", EncodeBody(dialect, language, shape.encoding())},
        {"activate", PrintExpression(language, Activate(shape.activation(), Term::Variable("x")))},
        {"reflectance", PrintExpression(language, ClampedReflectance(Term::Variable("z")))},
+       {"halves", storage == Storage::kHalf ? HalvesFunction(dialect) : ""},
        {"constants", constants},
        {"layers", layers}});
   return FillIn(text, {{"about", CommentText(network)}, {"name", name}});
@@ -321,24 +413,48 @@ void CheckGlslName(const std::string& name) {
   }
 }
 
-}  // namespace
-
-std::string GlslSource(const NeuralBrdf& network, const std::string& name) {
+std::string Glsl(Storage storage, const NeuralBrdf& network, const std::string& name) {
   CheckGlslName(name);
-  return Source(kGlsl, network, name);
+  return Source(kGlsl, storage, network, name);
 }
 
-std::string HlslSource(const NeuralBrdf& network, const std::string& name) {
+std::string Hlsl(Storage storage, const NeuralBrdf& network, const std::string& name) {
   CheckIdentifier(name);
-  return Source(kHlsl, network, name);
+  return Source(kHlsl, storage, network, name);
 }
 
-std::string WgslSource(const NeuralBrdf& network, const std::string& name) {
+std::string Wgsl(Storage storage, const NeuralBrdf& network, const std::string& name) {
   CheckIdentifier(name);
   if (name == "_" || name.starts_with("__")) {
     Fail("name=", name, " is reserved in WGSL: ", name, "_eval begins with __");
   }
-  return Source(kWgsl, network, name);
+  return Source(kWgsl, storage, network, name);
+}
+
+}  // namespace
+
+std::string GlslSource(const NeuralBrdf& network, const std::string& name) {
+  return Glsl(Storage::kSingle, network, name);
+}
+
+std::string GlslHalfSource(const NeuralBrdf& network, const std::string& name) {
+  return Glsl(Storage::kHalf, network, name);
+}
+
+std::string HlslSource(const NeuralBrdf& network, const std::string& name) {
+  return Hlsl(Storage::kSingle, network, name);
+}
+
+std::string HlslHalfSource(const NeuralBrdf& network, const std::string& name) {
+  return Hlsl(Storage::kHalf, network, name);
+}
+
+std::string WgslSource(const NeuralBrdf& network, const std::string& name) {
+  return Wgsl(Storage::kSingle, network, name);
+}
+
+std::string WgslHalfSource(const NeuralBrdf& network, const std::string& name) {
+  return Wgsl(Storage::kHalf, network, name);
 }
 
 }  // namespace pbnbrdf

@@ -10,6 +10,15 @@
 
 namespace pbnbrdf {
 
+NetworkOptions NetworkOptions::Of(const NetworkShape& shape) {
+  NetworkOptions options;
+  options.encoding = shape.encoding();
+  options.hidden = shape.hidden();
+  options.activation = shape.activation();
+  options.channels = shape.num_outputs();
+  return options;
+}
+
 NetworkShape NetworkOptions::Shape() const {
   return NetworkShape(encoding.value_or(Encoding::kMerl), hidden, activation,
                       channels == 0 ? NetworkShape::kChannels : channels);

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "measure/measures.h"
+#include "pbnbrdf/base/names.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "pbnbrdf/brdf/importance_sampler.h"
 #include "pbnbrdf/brdf/reciprocal.h"
@@ -19,6 +20,7 @@
 #include "pbnbrdf/export/export.h"
 #include "pbnbrdf/models/analytic.h"
 #include "pbnbrdf/network/neural_brdf.h"
+#include "pbnbrdf/solve/half_weights.h"
 #include "pbnbrdf/solve/problem_file.h"
 #include "pbnbrdf/sources/open_brdf.h"
 #include "solve/fit_fields.h"
@@ -306,6 +308,13 @@ nb::list Weights(const std::shared_ptr<NeuralBrdf>& network) {
   return arrays;
 }
 
+// The network with its weights rounded, if the format wants that.
+NeuralBrdf ForFormat(const NeuralBrdf& network, const std::string& format) {
+  const bool half =
+      FindNamed(ExportFormats(), "format=", format).source == ExportSource::kHalfNetwork;
+  return half ? ToHalfWeights(network).network : network;
+}
+
 }  // namespace
 
 NB_MODULE(_pbnbrdf, m) {
@@ -336,11 +345,11 @@ NB_MODULE(_pbnbrdf, m) {
       .def(
           "export",
           [](const NeuralBrdf& network, const std::string& format, const std::string& path,
-             const std::string& name) { Export(network, format, path, name); },
+             const std::string& name) { Export(ForFormat(network, format), format, path, name); },
           nb::arg("format"), nb::arg("path"), nb::arg("name") = "")
       .def("source",
            [](const NeuralBrdf& network, const std::string& format, const std::string& name) {
-             return ExportedFiles(network, format, name, name).at(0).content;
+             return ExportedFiles(ForFormat(network, format), format, name, name).at(0).content;
            });
   nb::class_<ImportanceSampler>(m, "Sampler")
       .def(nb::init<const Brdf&>())

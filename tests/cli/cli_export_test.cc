@@ -23,6 +23,9 @@ TEST_F(Cli, ExportWritesEveryFormat) {
                                                     {"glsl", "x.glsl"},
                                                     {"hlsl", "x.hlsl"},
                                                     {"wgsl", "x.wgsl"},
+                                                    {"glsl_half", "y.glsl"},
+                                                    {"hlsl_half", "y.hlsl"},
+                                                    {"wgsl_half", "y.wgsl"},
                                                     {"gltf", "x.gltf"},
                                                     {"materialx", "x.mtlx"},
                                                     {"mitsuba", "x.py"},
@@ -38,6 +41,10 @@ TEST_F(Cli, ExportWritesEveryFormat) {
   }
   EXPECT_THAT(help,
               HasSubstr("npy | h5 | merl | bsdf | bsdf_spectral | csv | c | glsl | hlsl | wgsl"));
+  const Result half = Run("export --fit=" + network + " --format=glsl_half --name=x --out=-");
+  EXPECT_THAT(half.err, HasSubstr(network + " with weights of half precision: changed by "));
+  EXPECT_THAT(half.out, HasSubstr("weights of half precision: changed by "));
+  EXPECT_THAT(half.out, HasSubstr("unpackHalf2x16("));
   EXPECT_EQ(NeuralBrdf::Read(Path("x_weights.safetensors")).weights(),
             NeuralBrdf::Read(network).weights());
   // The CSV names the directions that its values are at; they alone are evaluated again.

@@ -7,6 +7,7 @@
 
 #include <cstring>
 
+#include "base/half.h"
 #include "export/networks.h"
 
 namespace pbnbrdf {
@@ -107,8 +108,8 @@ GLuint LinkedProgram(const std::string& functions, const std::string& name) {
   return program;
 }
 
-// The shader's values at the pairs.
-std::vector<Texel> Draw(const NeuralBrdf& network, const std::string& name,
+// The values at the pairs of a shader that GlslSource or GlslHalfSource wrote.
+std::vector<Texel> Draw(const std::string& functions, const std::string& name,
                         const std::vector<FloatPair>& pairs) {
   const std::size_t size = (pairs.size() + kWidth - 1) / kWidth * kWidth;
   std::vector<Texel> wi(size), wo(size), values(size);
@@ -116,7 +117,7 @@ std::vector<Texel> Draw(const NeuralBrdf& network, const std::string& name,
     const FloatPair& p = pairs[n];
     wi[n] = {p[0], p[1], p[2], 0}, wo[n] = {p[3], p[4], p[5], 0};
   }
-  const GLuint program = LinkedProgram(GlslSource(network, name), name);
+  const GLuint program = LinkedProgram(functions, name);
   const GLuint textures[3] = {FloatTexture(wi), FloatTexture(wo), FloatTexture(values)};
   GLuint frame;
   glGenFramebuffers(1, &frame);
@@ -154,7 +155,7 @@ TEST(GlslSource, AgreesWithTheLibrary) {
   double worst = 0.0;
   for (const auto& [name, network] : NetworksOfAllKinds()) {
     const std::vector<Rgb> expected = LibraryValues(network, pairs);
-    const std::vector<Texel> values = Draw(network, name, pairs);
+    const std::vector<Texel> values = Draw(GlslSource(network, name), name, pairs);
     double worst_here = 0.0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       for (int c = 0; c < 3; ++c) {
@@ -171,6 +172,33 @@ TEST(GlslSource, AgreesWithTheLibrary) {
   RecordProperty("worst_error_over_bound", FormatNumber(worst));
 }
 
+NeuralBrdf Rounded(const NeuralBrdf& network) {
+  std::vector<double> weights = network.weights();
+  for (double& weight : weights) weight = NearestHalf(weight);
+  return NeuralBrdf(network.shape(), std::move(weights));
+}
+
+TEST(GlslSource, WeightsOfHalfPrecisionAreThoseOfTheNetwork) {
+  const Context context;
+  if (!context.works()) GTEST_SKIP() << "needs OpenGL ES 3 with float targets, e.g. Mesa's";
+  const std::vector<FloatPair> pairs = HardPairs();
+  for (const auto& [name, network] : NetworksOfAllKinds()) {
+    const NeuralBrdf rounded = Rounded(network);
+    const std::vector<Rgb> expected = LibraryValues(rounded, pairs);
+    const std::vector<Texel> values = Draw(GlslHalfSource(rounded, name), name, pairs);
+    double worst = 0.0;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      for (int c = 0; c < 3; ++c) {
+        const double f = expected[p][c];
+        worst = std::max(worst, std::abs(values[p][c] - f) / Allowed(rounded, f));
+      }
+    }
+    EXPECT_LE(worst, 1.0) << name;
+    EXPECT_THAT(ErrorOf([&] { GlslHalfSource(network, name); }),
+                HasSubstr("isn't of half precision"));
+  }
+}
+
 TEST(GlslSource, IsReciprocalToTheBit) {
   const Context context;
   if (!context.works()) GTEST_SKIP() << "needs OpenGL ES 3 with float targets, e.g. Mesa's";
@@ -178,8 +206,9 @@ TEST(GlslSource, IsReciprocalToTheBit) {
   std::vector<FloatPair> swapped;
   for (const FloatPair& pair : pairs) swapped.push_back(Swapped(pair));
   for (const auto& [name, network] : NetworksOfAllKinds()) {
-    const std::vector<Texel> there = Draw(network, name, pairs),
-                             back = Draw(network, name, swapped);
+    const std::string functions = GlslSource(network, name);
+    const std::vector<Texel> there = Draw(functions, name, pairs),
+                             back = Draw(functions, name, swapped);
     std::size_t differ = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       differ += std::memcmp(&there[p], &back[p], sizeof(Texel)) != 0;

@@ -36,23 +36,23 @@ HLSL_MAIN = """
 """
 
 
-def exported(name, network, language, main):
+def exported(name, network, format, main):
     """The exported functions with a compute shader that calls them."""
-    file = path(f"{name}.{language}")
-    program("export", f"--fit={network}", f"--format={language}", f"--out={file}")
+    file = path(f"{name}.{format}")
+    program("export", f"--fit={network}", f"--format={format}", f"--out={file}")
     with open(file, encoding="utf-8") as text:
         return text.read() + main.replace("NAME", name)
 
 
-def wgsl(name, network):
-    return exported(name, network, "wgsl", WGSL_MAIN)
+def wgsl(name, network, kind=""):
+    return exported(name, network, "wgsl" + kind, WGSL_MAIN)
 
 
-def hlsl(name, network):
+def hlsl(name, network, kind=""):
     """HLSL, as HLSL and as Slang, translated to WGSL; the two are the same."""
     source, translated = path(f"{name}_main.hlsl"), path(f"{name}_main.wgsl")
     with open(source, "w", encoding="utf-8") as file:
-        file.write(exported(name, network, "hlsl", HLSL_MAIN))
+        file.write(exported(name, network, "hlsl" + kind, HLSL_MAIN))
     texts = []
     for language in ("hlsl", "slang"):
         done = subprocess.run(
@@ -94,3 +94,11 @@ for name, encoding, file in all_networks():
             assert differ > 1000  # the comparison can fail
         else:
             check(f"{what}, pairs that aren't reciprocal to the bit", differ, 0)
+    if name == "merl_tanh":
+        # Weights of half precision, which both languages get from the same program.
+        halves = [run(language(name, file, "_half"), wi, wo) for language in (wgsl, hlsl)]
+        assert (halves[0] != values).any()
+        check(f"{name}, weights of half precision, languages apart over what is allowed",
+              np.max(np.abs(halves[0] - halves[1]) / allowed), 1)
+        check(f"{name}, change by weights of half precision over 1 + f",
+              np.mean(np.abs(halves[0] - expected) / (1 + expected)), 1e-3)

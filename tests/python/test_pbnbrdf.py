@@ -89,6 +89,8 @@ def test_files_go_round(fit, tmp_path):
     assert again.metadata["version"] == pbnbrdf.__version__
     fit.export("glsl", tmp_path / "a.glsl", name="gold")
     assert "vec3 gold_eval(" in (tmp_path / "a.glsl").read_text()
+    fit.export("wgsl_half", tmp_path / "a.wgsl")
+    assert "unpack2x16float" in (tmp_path / "a.wgsl").read_text()
 
 
 def test_fits_arrays(gold):

@@ -14,9 +14,10 @@ namespace pbnbrdf {
 
 // What a format holds.
 enum class ExportSource {
-  kNetwork,     // a NeuralBrdf
-  kAny,         // a table of any source
-  kPrincipled,  // an AnalyticBrdf of the principled model
+  kNetwork,      // a NeuralBrdf
+  kHalfNetwork,  // a NeuralBrdf with weights of half precision (solve/half_weights.h)
+  kAny,          // a table of any source
+  kPrincipled,   // an AnalyticBrdf of the principled model
 };
 
 // One of the formats, by its name.

@@ -42,6 +42,9 @@ struct NetworkOptions {
   Initialization initialization = Initialization::kGlorot;
   int channels = 0;  // outputs: 3, 1, or 0: as many as the material has channels
 
+  // Of a network that is there.
+  static NetworkOptions Of(const NetworkShape& shape);
+
   // What is left open is taken as for an isotropic material of three channels.
   NetworkShape Shape() const;
 };
