@@ -1,7 +1,8 @@
 #!/bin/sh
 # A Slurm of two nodes on this machine alone, on the loopback interface, in one folder. To be sourced, as root:
 #   slurm_start FOLDER      starts munge, the controller and the nodes node1, node2 of one core each
-#   slurm_crash NODE        ends the node's daemon and what runs on it at once, as if the machine had lost power
+#   slurm_crash NODE        once a job's processes run on the node, ends its daemon and them at once, as if the machine
+#                           had lost power
 #   slurm_node NODE         starts its daemon
 #   slurm_stop              ends all that was started
 export SLURM_CONF
@@ -58,23 +59,27 @@ TXT
 slurm_node() { slurmd -N "$1"; }
 
 slurm_crash() {
-  jobs=$(squeue --noheader --states=RUNNING --nodelist="$1" --format=%A)
+  for _ in $(seq 300); do
+    processes=$(processes_on "$1")
+    [ -z "$processes" ] || break
+    sleep 0.1
+  done
   kill -KILL "$(cat "$slurm/slurmd-$1.pid")"
-  for job in $jobs; do
-    for process in $(processes_with "SLURM_JOB_ID=$job"); do
-      has_environment "$process" "SLURM_CONF=$SLURM_CONF" || continue
-      parent=$(ps -o ppid= -p "$process" | tr -d ' ')  # the daemon of the step, where it is that
-      if [ "$(ps -o comm= -p "$parent")" = slurmstepd ]; then kill -KILL "$parent"; fi
-      kill -KILL "$process" 2> /dev/null || true
-    done
+  for process in $processes $(processes_on "$1"); do
+    parent=$(ps -o ppid= -p "$process" | tr -d ' ')  # the daemon of the step, where it is that
+    if [ "$(ps -o comm= -p "${parent:-1}")" = slurmstepd ]; then kill -KILL "$parent"; fi
+    kill -KILL "$process" 2> /dev/null || true
   done
 }
 
-has_environment() { { tr '\0' '\n' < "/proc/$1/environ"; } 2> /dev/null | grep -qx "$2"; }
-
-processes_with() {
-  for folder in /proc/[0-9]*; do
-    if has_environment "${folder#/proc/}" "$1"; then echo "${folder#/proc/}"; fi
+# Of the jobs that run on a node.
+processes_on() {
+  for job in $(squeue --noheader --states=RUNNING --nodelist="$1" --format=%A); do
+    for environment in $(grep -lzx "SLURM_JOB_ID=$job" /proc/[0-9]*/environ 2> /dev/null); do
+      if grep -qzx "SLURM_CONF=$SLURM_CONF" "$environment" 2> /dev/null; then
+        echo "$environment" | cut -d/ -f3
+      fi
+    done
   done
 }
 
