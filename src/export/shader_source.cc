@@ -263,15 +263,13 @@ std::string Element(const Dialect& dialect, Storage storage, const Quad& quad) {
 
 void AddElements(const Dialect& dialect, Storage storage, const std::array<Quad, 4>& matrix,
                  std::vector<std::string>* elements) {
-  std::vector<std::string> quads;
-  for (const Quad& quad : matrix) {
-    quads.push_back(storage == Storage::kHalf ? Element(dialect, storage, quad) : Numbers(quad));
-  }
   if (storage == Storage::kHalf) {
-    elements->insert(elements->end(), quads.begin(), quads.end());
-  } else {
-    elements->push_back(StrCat(dialect.mat4, "(", Join(quads, ", "), ")"));
+    for (const Quad& quad : matrix) elements->push_back(Element(dialect, storage, quad));
+    return;
   }
+  std::vector<std::string> numbers;
+  for (const Quad& quad : matrix) numbers.push_back(Numbers(quad));
+  elements->push_back(StrCat(dialect.mat4, "(", Join(numbers, ", "), ")"));
 }
 
 // The weights of a layer as constants, row of units by row of units: for each four units their biases, and the

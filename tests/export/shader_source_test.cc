@@ -7,7 +7,6 @@
 
 #include <cstring>
 
-#include "base/half.h"
 #include "export/networks.h"
 
 namespace pbnbrdf {
@@ -172,18 +171,12 @@ TEST(GlslSource, AgreesWithTheLibrary) {
   RecordProperty("worst_error_over_bound", FormatNumber(worst));
 }
 
-NeuralBrdf Rounded(const NeuralBrdf& network) {
-  std::vector<double> weights = network.weights();
-  for (double& weight : weights) weight = NearestHalf(weight);
-  return NeuralBrdf(network.shape(), std::move(weights));
-}
-
 TEST(GlslSource, WeightsOfHalfPrecisionAreThoseOfTheNetwork) {
   const Context context;
   if (!context.works()) GTEST_SKIP() << "needs OpenGL ES 3 with float targets, e.g. Mesa's";
   const std::vector<FloatPair> pairs = HardPairs();
   for (const auto& [name, network] : NetworksOfAllKinds()) {
-    const NeuralBrdf rounded = Rounded(network);
+    const NeuralBrdf rounded = RoundedOneByOne(network);
     const std::vector<Rgb> expected = LibraryValues(rounded, pairs);
     const std::vector<Texel> values = Draw(GlslHalfSource(rounded, name), name, pairs);
     double worst = 0.0;
