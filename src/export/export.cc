@@ -88,6 +88,12 @@ Files OfPrincipled(const Brdf& source, const std::string& path, const std::strin
   return {{path, content(*model, identifier)}};
 }
 
+// A shader's text, with weights stored so.
+template <auto source, WeightStorage storage>
+std::string Shader(const NeuralBrdf& network, const std::string& identifier) {
+  return source(network, identifier, storage);
+}
+
 constexpr ExportFormat kFormats[] = {
     {"npy",
      "BASEfc1.npy and fc2 fc3 b1 b2 b3, which NBRDF's Mitsuba plugin reads; the network must "
@@ -114,17 +120,17 @@ constexpr ExportFormat kFormats[] = {
      "needs <math.h> only",
      ExportSource::kNetwork, OfNetwork<OneFile<CSource>>},
     {"glsl", "vec3 NAME_eval(vec3 wi, vec3 wo) for GLSL ES 3.00 (WebGL 2) or later",
-     ExportSource::kNetwork, OfNetwork<OneFile<GlslSource>>},
+     ExportSource::kNetwork, OfNetwork<OneFile<Shader<GlslSource, WeightStorage::kSingle>>>},
     {"hlsl", "float3 NAME_eval(float3 wi, float3 wo) for HLSL of shader model 5 or later, or Slang",
-     ExportSource::kNetwork, OfNetwork<OneFile<HlslSource>>},
+     ExportSource::kNetwork, OfNetwork<OneFile<Shader<HlslSource, WeightStorage::kSingle>>>},
     {"wgsl", "fn NAME_eval(wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> for WGSL (WebGPU)",
-     ExportSource::kNetwork, OfNetwork<OneFile<WgslSource>>},
+     ExportSource::kNetwork, OfNetwork<OneFile<Shader<WgslSource, WeightStorage::kSingle>>>},
     {"glsl_half", "glsl with weights of half precision", ExportSource::kHalfNetwork,
-     OfNetwork<OneFile<GlslHalfSource>>},
+     OfNetwork<OneFile<Shader<GlslSource, WeightStorage::kHalf>>>},
     {"hlsl_half", "hlsl with weights of half precision", ExportSource::kHalfNetwork,
-     OfNetwork<OneFile<HlslHalfSource>>},
+     OfNetwork<OneFile<Shader<HlslSource, WeightStorage::kHalf>>>},
     {"wgsl_half", "wgsl with weights of half precision", ExportSource::kHalfNetwork,
-     OfNetwork<OneFile<WgslHalfSource>>},
+     OfNetwork<OneFile<Shader<WgslSource, WeightStorage::kHalf>>>},
     {"mitsuba",
      "FILE.py, which registers the BSDF \"pbnbrdf\" in Mitsuba 3, FILE_weights.safetensors and "
      "FILE_proposal.safetensors, by which it draws directions",

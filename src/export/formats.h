@@ -26,6 +26,10 @@ namespace pbnbrdf {
 // name: an identifier of C. Throws Error otherwise.
 std::string CSource(const NeuralBrdf& network, const std::string& name);
 
+// How a shader's weights are stored: in single precision, rounded to it, or two of half precision to an integer, which
+// they must be already (solve/half_weights.h). It computes in single precision.
+enum class WeightStorage { kSingle, kHalf };
+
 // Functions for a shader, of which others may call
 //
 //   vec3 NAME_eval(vec3 wi, vec3 wo);                              GLSL ES 3.00 (WebGL 2) or later
@@ -40,16 +44,13 @@ std::string CSource(const NeuralBrdf& network, const std::string& name);
 // GLSL is to be put after its #version line, and makes highp the default precision, also for what follows it.
 //
 // name: an identifier of the language; of GLSL it doesn't begin with "gl_" nor has "__" in it, of WGSL NAME_eval
-// doesn't begin with "__". Throws Error otherwise, or if a weight is beyond single precision.
-std::string GlslSource(const NeuralBrdf& network, const std::string& name);
-std::string HlslSource(const NeuralBrdf& network, const std::string& name);
-std::string WgslSource(const NeuralBrdf& network, const std::string& name);
-
-// The same with weights of half precision, two to an integer: half the memory. Computed in single precision. Throws
-// Error also unless all weights are numbers of half precision (solve/half_weights.h).
-std::string GlslHalfSource(const NeuralBrdf& network, const std::string& name);
-std::string HlslHalfSource(const NeuralBrdf& network, const std::string& name);
-std::string WgslHalfSource(const NeuralBrdf& network, const std::string& name);
+// doesn't begin with "__". Throws Error otherwise, or if a weight isn't a number of the kind that is stored.
+std::string GlslSource(const NeuralBrdf& network, const std::string& name,
+                       WeightStorage storage = WeightStorage::kSingle);
+std::string HlslSource(const NeuralBrdf& network, const std::string& name,
+                       WeightStorage storage = WeightStorage::kSingle);
+std::string WgslSource(const NeuralBrdf& network, const std::string& name,
+                       WeightStorage storage = WeightStorage::kSingle);
 
 // A Python file that registers the BSDF "pbnbrdf" in Mitsuba 3 [1] when it is imported after mitsuba.set_variant(),
 // for scalar, LLVM and CUDA variants in RGB, spectral or monochromatic mode. It needs nothing but Mitsuba. It draws

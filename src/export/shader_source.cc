@@ -214,9 +214,6 @@ std::string EncodeBody(const Dialect& dialect, const Language& language, Encodin
 
 int Quads(int count) { return (count + 3) / 4; }
 
-// How weights are kept: as numbers, or two of half precision to an integer.
-enum class Storage { kSingle, kHalf };
-
 using Quad = std::array<double, 4>;
 
 // The weight of a unit for an input, or its bias for input `in`; 0 where there is no unit or input.
@@ -256,14 +253,14 @@ std::string Halves(double first, double second) {
 }
 
 // The elements of an array.
-std::string Element(const Dialect& dialect, Storage storage, const Quad& quad) {
-  if (storage == Storage::kSingle) return StrCat(dialect.vec4, "(", Numbers(quad), ")");
+std::string Element(const Dialect& dialect, WeightStorage storage, const Quad& quad) {
+  if (storage == WeightStorage::kSingle) return StrCat(dialect.vec4, "(", Numbers(quad), ")");
   return StrCat(dialect.uvec2, "(", Halves(quad[0], quad[1]), ", ", Halves(quad[2], quad[3]), ")");
 }
 
-void AddElements(const Dialect& dialect, Storage storage, const std::array<Quad, 4>& matrix,
+void AddElements(const Dialect& dialect, WeightStorage storage, const std::array<Quad, 4>& matrix,
                  std::vector<std::string>* elements) {
-  if (storage == Storage::kHalf) {
+  if (storage == WeightStorage::kHalf) {
     for (const Quad& quad : matrix) elements->push_back(Element(dialect, storage, quad));
     return;
   }
@@ -274,7 +271,8 @@ void AddElements(const Dialect& dialect, Storage storage, const std::array<Quad,
 
 // The weights of a layer as constants, row of units by row of units: for each four units their biases, and the
 // matrices that take four values each to them, of half precision as four elements each.
-std::string Constants(const Dialect& dialect, Storage storage, const LayerWeights& layer, int l) {
+std::string Constants(const Dialect& dialect, WeightStorage storage, const LayerWeights& layer,
+                      int l) {
   const int outs = Quads(layer.out), ins = Quads(layer.in);
   std::vector<std::string> biases, matrices;
   for (int o = 0; o < outs; ++o) {
@@ -285,7 +283,7 @@ std::string Constants(const Dialect& dialect, Storage storage, const LayerWeight
   }
   const auto array = [&](std::string_view single, const std::string& name,
                          const std::vector<std::string>& values) {
-    const std::string_view type = storage == Storage::kHalf ? dialect.uvec2 : single;
+    const std::string_view type = storage == WeightStorage::kHalf ? dialect.uvec2 : single;
     return FillIn(dialect.array, {{"type", std::string(type)},
                                   {"array", name},
                                   {"count", StrCat(values.size())},
@@ -296,14 +294,15 @@ std::string Constants(const Dialect& dialect, Storage storage, const LayerWeight
 }
 
 // The biases of the four units of row `row`.
-std::string BiasesAt(Storage storage, int l, const std::string& row) {
+std::string BiasesAt(WeightStorage storage, int l, const std::string& row) {
   const std::string element = StrCat("@name@_b", l, "[", row, "]");
-  return storage == Storage::kHalf ? StrCat("@name@_halves(", element, ")") : element;
+  return storage == WeightStorage::kHalf ? StrCat("@name@_halves(", element, ")") : element;
 }
 
-std::string MatrixAt(const Dialect& dialect, Storage storage, int l, const std::string& index) {
+std::string MatrixAt(const Dialect& dialect, WeightStorage storage, int l,
+                     const std::string& index) {
   const std::string array = StrCat("@name@_w", l);
-  if (storage == Storage::kSingle) return StrCat(array, "[", index, "]");
+  if (storage == WeightStorage::kSingle) return StrCat(array, "[", index, "]");
   std::vector<std::string> quads;
   for (int k = 0; k < 4; ++k) {
     quads.push_back(StrCat("@name@_halves(", array, "[4 * (", index, ") + ", k, "])"));
@@ -319,7 +318,7 @@ std::string HalvesFunction(const Dialect& dialect) {
 }
 
 // x<l+1> from x<l>, or z from the last ones. Loops have variables of their own: those of HLSL live on behind them.
-std::string Pass(const Dialect& dialect, Storage storage, const LayerWeights& layer, int l) {
+std::string Pass(const Dialect& dialect, WeightStorage storage, const LayerWeights& layer, int l) {
   const int outs = Quads(layer.out), ins = Quads(layer.in);
   const std::string i = StrCat("i", l), o = StrCat("o", l);
   const auto loop = [&](const std::string& variable, int count) {
@@ -349,9 +348,9 @@ void CheckHalfWeights(const NeuralBrdf& network) {
   }
 }
 
-std::string Source(const Dialect& dialect, Storage storage, const NeuralBrdf& fitted,
+std::string Source(const Dialect& dialect, WeightStorage storage, const NeuralBrdf& fitted,
                    const std::string& name) {
-  if (storage == Storage::kHalf) CheckHalfWeights(fitted);
+  if (storage == WeightStorage::kHalf) CheckHalfWeights(fitted);
   const NeuralBrdf network = fitted.WithRgbOutputs();
   std::string constants, layers;
   int number = 0;
@@ -398,7 +397,7 @@ std::string Source(const Dialect& dialect, Storage storage, const NeuralBrdf& fi
        {"encode", EncodeBody(dialect, language, shape.encoding())},
        {"activate", PrintExpression(language, Activate(shape.activation(), Term::Variable("x")))},
        {"reflectance", PrintExpression(language, ClampedReflectance(Term::Variable("z")))},
-       {"halves", storage == Storage::kHalf ? HalvesFunction(dialect) : ""},
+       {"halves", storage == WeightStorage::kHalf ? HalvesFunction(dialect) : ""},
        {"constants", constants},
        {"layers", layers}});
   return FillIn(text, {{"about", CommentText(network)}, {"name", name}});
@@ -411,48 +410,24 @@ void CheckGlslName(const std::string& name) {
   }
 }
 
-std::string Glsl(Storage storage, const NeuralBrdf& network, const std::string& name) {
+}  // namespace
+
+std::string GlslSource(const NeuralBrdf& network, const std::string& name, WeightStorage storage) {
   CheckGlslName(name);
   return Source(kGlsl, storage, network, name);
 }
 
-std::string Hlsl(Storage storage, const NeuralBrdf& network, const std::string& name) {
+std::string HlslSource(const NeuralBrdf& network, const std::string& name, WeightStorage storage) {
   CheckIdentifier(name);
   return Source(kHlsl, storage, network, name);
 }
 
-std::string Wgsl(Storage storage, const NeuralBrdf& network, const std::string& name) {
+std::string WgslSource(const NeuralBrdf& network, const std::string& name, WeightStorage storage) {
   CheckIdentifier(name);
   if (name == "_" || name.starts_with("__")) {
     Fail("name=", name, " is reserved in WGSL: ", name, "_eval begins with __");
   }
   return Source(kWgsl, storage, network, name);
-}
-
-}  // namespace
-
-std::string GlslSource(const NeuralBrdf& network, const std::string& name) {
-  return Glsl(Storage::kSingle, network, name);
-}
-
-std::string GlslHalfSource(const NeuralBrdf& network, const std::string& name) {
-  return Glsl(Storage::kHalf, network, name);
-}
-
-std::string HlslSource(const NeuralBrdf& network, const std::string& name) {
-  return Hlsl(Storage::kSingle, network, name);
-}
-
-std::string HlslHalfSource(const NeuralBrdf& network, const std::string& name) {
-  return Hlsl(Storage::kHalf, network, name);
-}
-
-std::string WgslSource(const NeuralBrdf& network, const std::string& name) {
-  return Wgsl(Storage::kSingle, network, name);
-}
-
-std::string WgslHalfSource(const NeuralBrdf& network, const std::string& name) {
-  return Wgsl(Storage::kHalf, network, name);
 }
 
 }  // namespace pbnbrdf

@@ -3,6 +3,7 @@
 
 #include "export/formats.h"
 #include "export/networks.h"
+#include "network/rounded_network.h"
 #include "pbnbrdf/sources/merl.h"
 #include "pbnbrdf/sources/nbrdf_files.h"
 

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/half.h"
 #include "network/random_network.h"
 #include "pbnbrdf/network/neural_brdf.h"
 
@@ -48,13 +47,6 @@ inline std::vector<std::pair<std::string, NeuralBrdf>> NetworksOfAllKinds() {
   networks.emplace_back("one_channel",
                         RandomNetwork(Encoding::kMerl, Activation::kTanh, {7}, 1, /*outputs=*/1));
   return networks;
-}
-
-// Weights of half precision.
-inline NeuralBrdf RoundedOneByOne(const NeuralBrdf& network) {
-  std::vector<double> weights = network.weights();
-  for (double& weight : weights) weight = NearestHalf(weight);
-  return NeuralBrdf(network.shape(), std::move(weights));
 }
 
 // Near the mirror direction down to 1e-7, retroreflection, the pole, grazing, the horizon and below

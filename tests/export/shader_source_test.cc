@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "export/networks.h"
+#include "network/rounded_network.h"
 
 namespace pbnbrdf {
 namespace {
@@ -107,7 +108,7 @@ GLuint LinkedProgram(const std::string& functions, const std::string& name) {
   return program;
 }
 
-// The values at the pairs of a shader that GlslSource or GlslHalfSource wrote.
+// The values at the pairs of a shader that GlslSource wrote.
 std::vector<Texel> Draw(const std::string& functions, const std::string& name,
                         const std::vector<FloatPair>& pairs) {
   const std::size_t size = (pairs.size() + kWidth - 1) / kWidth * kWidth;
@@ -178,7 +179,8 @@ TEST(GlslSource, WeightsOfHalfPrecisionAreThoseOfTheNetwork) {
   for (const auto& [name, network] : NetworksOfAllKinds()) {
     const NeuralBrdf rounded = RoundedOneByOne(network);
     const std::vector<Rgb> expected = LibraryValues(rounded, pairs);
-    const std::vector<Texel> values = Draw(GlslHalfSource(rounded, name), name, pairs);
+    const std::vector<Texel> values =
+        Draw(GlslSource(rounded, name, WeightStorage::kHalf), name, pairs);
     double worst = 0.0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       for (int c = 0; c < 3; ++c) {
@@ -187,7 +189,7 @@ TEST(GlslSource, WeightsOfHalfPrecisionAreThoseOfTheNetwork) {
       }
     }
     EXPECT_LE(worst, 1.0) << name;
-    EXPECT_THAT(ErrorOf([&] { GlslHalfSource(network, name); }),
+    EXPECT_THAT(ErrorOf([&] { GlslSource(network, name, WeightStorage::kHalf); }),
                 HasSubstr("isn't of half precision"));
   }
 }

@@ -1,6 +1,6 @@
 #include "pbnbrdf/solve/half_weights.h"
 
-#include "base/half.h"
+#include "network/rounded_network.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/solve/fit.h"
 #include "solve/small_problem.h"
@@ -18,12 +18,6 @@ NeuralBrdf QuickFit(const Brdf& material) {
   FitOptions options;
   options.schedule.max_iterations = 150;
   return FitBrdf(material, problem, options).network;
-}
-
-NeuralBrdf RoundedOneByOne(const NeuralBrdf& network) {
-  std::vector<double> weights = network.weights();
-  for (double& weight : weights) weight = NearestHalf(weight);
-  return NeuralBrdf(network.shape(), std::move(weights));
 }
 
 TEST(HalfWeights, ChangeLittleForBeingRoundedTogether) {

@@ -13,11 +13,10 @@ struct HalfWeights {
   double max_albedo = 0.0;  // the largest directional albedo
 };
 
-// The network with all weights rounded to half precision: normal numbers, up to 65504. Rounded one by one they would
-// make a hundred times the error of the fit, as a fit's weights are large and cancel each other. Here some are rounded
-// at a time, and those that are still free then make good for it, as in optimal brain compression [1]. What conserves
-// energy still does. Takes seconds for 675 weights, and time and memory grow as the cube and the square of their
-// number.
+// The network with all weights rounded to half precision: normal numbers, up to 65504. Rounded one by one they make
+// several times the error of the fit, as a fit's weights are large and cancel each other. Here some are rounded at a
+// time, and those that are still free then make good for it, as in optimal brain compression [1]. What conserves energy
+// still does. Takes some ten seconds for 675 weights; time and memory grow as the cube and the square of their number.
 //
 // Throws Error if a weight is beyond half precision, or the network has more than 5000 weights.
 //
