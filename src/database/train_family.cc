@@ -207,10 +207,13 @@ WeightFamily FamilyAt(const FamilyPoint& point, std::span<const DatabaseMaterial
                       {weights.data() + size, weights.data() + weights.size()}, std::move(members));
 }
 
+NeuralBrdf MemberAt(const WeightFamily& family, const std::vector<double>& code) {
+  return NeuralBrdf(family.shape(), family.WeightsAt(code));
+}
+
 // As MeasureEnergy has it.
 double LargestAlbedo(const WeightFamily& family, const std::vector<double>& code) {
-  const NeuralBrdf network(family.shape(), family.WeightsAt(code));
-  return Largest(LargestAlbedos(AlbedoProfile(network, {})));
+  return Largest(LargestAlbedos(AlbedoProfile(MemberAt(family, code), {})));
 }
 
 // The member's code fitted again, with the energy term where its albedo exceeds 1 without. Returns the largest
@@ -219,7 +222,7 @@ double FitMember(const WeightFamily& family, const FitProblem& problem, Objectiv
                  std::vector<double>* code) {
   *code = MinimizeOverCode(family, kRidge, *code, objective).code;
   EnergyConstraints constraints(problem);
-  double albedo = constraints.Measure(family.WeightsAt(*code)), weight = kFirstEnergyWeight;
+  double albedo = constraints.Measure(MemberAt(family, *code)), weight = kFirstEnergyWeight;
   if (albedo < kClearlyConserved) return albedo;
   for (int round = 0; round < kEnergyRounds; ++round) {
     // The constraints see most directions; what a finer check finds between them counts as well.
@@ -230,10 +233,10 @@ double FitMember(const WeightFamily& family, const FitProblem& problem, Objectiv
     if (seems_conserved || weight > kLargestEnergyWeight) {
       constraints.LowerTarget(albedo - kTargetAlbedo);
     }
-    constraints.Measure(family.WeightsAt(*code));  // of the new strata, too
+    constraints.Measure(MemberAt(family, *code));  // of the new strata, too
     objective->SetEnergy(weight, constraints.strata());
     *code = MinimizeOverCode(family, kRidge, *code, objective).code;
-    albedo = constraints.Measure(family.WeightsAt(*code));
+    albedo = constraints.Measure(MemberAt(family, *code));
     if (weight <= kLargestEnergyWeight) weight *= kEnergyWeightGrowth;
   }
   return LargestAlbedo(family, *code);

@@ -3,7 +3,6 @@
 
 #include <concepts>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "pbnbrdf/problem/linearization.h"
@@ -35,7 +34,10 @@ class SampleSums {
 
   // Objective::SumCurvatureInDouble.
   bool SumCurvatureInDouble() {
-    return !std::same_as<T, double> && !std::exchange(curvature_in_double_, true);
+    if (std::same_as<T, double> || curvature_in_double_) return false;
+    curvature_in_double_ = true;
+    curvature_sums_.clear();
+    return true;
   }
 
   // Objective::Curve; always in double precision.

@@ -1,7 +1,6 @@
 #include "solve/energy_constraints.h"
 
 #include "base/parallel.h"
-#include "pbnbrdf/network/neural_brdf.h"
 
 namespace pbnbrdf {
 namespace {
@@ -14,23 +13,22 @@ constexpr int kStratumSpacing = 3;       // of the grid's directions that become
 }  // namespace
 
 EnergyConstraints::EnergyConstraints(const FitProblem& problem)
-    : problem_(problem), shape_(problem.Shape()), strata_(EqualStrata(problem)) {
+    : problem_(problem), strata_(EqualStrata(problem)) {
   solid_angle_ = strata_.front().solid_angle;
 }
 
-double EnergyConstraints::Measure(const std::vector<double>& weights) {
-  const std::unique_ptr<Brdf> single = NeuralBrdf(shape_, weights).SinglePrecision();
-  const Brdf& network = *single;
-  if (weights != measured_) {
-    profile_ = AlbedoProfile(network, kRoundGrid);
-    measured_ = weights;
+double EnergyConstraints::Measure(const NeuralBrdf& network) {
+  const std::unique_ptr<Brdf> single = network.SinglePrecision();
+  if (network.weights() != measured_) {
+    profile_ = AlbedoProfile(*single, kRoundGrid);
+    measured_ = network.weights();
   }
   // A limit makes up for the error of the energy term's own quadrature, which is coarser.
   const auto fine = AlbedoQuadrature::OnMerlRows(2, 64);
   ParallelFor(strata_.size(), [&](std::size_t k) {
     EnergyStratum& stratum = strata_[k];
-    const Rgb exact = DirectionalAlbedo(network, stratum.wi, fine);
-    const Rgb own = DirectionalAlbedo(network, stratum.wi, QuadratureOfStratum(problem_, k));
+    const Rgb exact = DirectionalAlbedo(*single, stratum.wi, fine);
+    const Rgb own = DirectionalAlbedo(*single, stratum.wi, QuadratureOfStratum(problem_, k));
     for (int c = 0; c < 3; ++c) stratum.limit[c] = target_ - (exact[c] - own[c]);
   });
   return Largest(LargestAlbedos(profile_));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pbnbrdf/brdf/albedo.h"
+#include "pbnbrdf/network/neural_brdf.h"
 #include "pbnbrdf/problem/energy_strata.h"
 #include "pbnbrdf/problem/fit_problem.h"
 #include "solve/energy_correction.h"
@@ -22,7 +23,7 @@ class EnergyConstraints {
   explicit EnergyConstraints(const FitProblem& problem);
 
   // Measures the network, in single precision. Returns its largest directional albedo.
-  double Measure(const std::vector<double>& weights);
+  double Measure(const NeuralBrdf& network);
 
   // Adds strata where the albedos that were measured last are too large.
   void Exchange();
@@ -36,7 +37,6 @@ class EnergyConstraints {
   void AddStratum(const IncidentAlbedo& at);
 
   const FitProblem problem_;
-  NetworkShape shape_;
   double solid_angle_;
   double target_ = kTargetAlbedo;
   std::vector<EnergyStratum> strata_;

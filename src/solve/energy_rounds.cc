@@ -72,7 +72,7 @@ void RunRounds(double weight, EnergyConstraints* constraints, Training* training
     RunStages(training,
               std::min(iterations * training->solver().traits.pace, last - summary.iterations));
     const double excess = energy.max_albedo - 1.0;
-    energy.max_albedo = constraints->Measure(training->weights());
+    energy.max_albedo = constraints->Measure(training->Network());
     const bool fell = energy.max_albedo - 1.0 < kRoundFall * excess;
     max_over_balance = fell ? kOverBalance : kWeightGrowth * max_over_balance;
     energy.strata = constraints->strata().size();
@@ -94,8 +94,9 @@ struct Conserving {
 void GoOn(EnergyConstraints* constraints, Training* training) {
   FitSummary& summary = training->summary();
   if (!training->MayContinue()) return;
-  RunStages(training, training->options().schedule.max_iterations - summary.iterations);
-  summary.energy.max_albedo = constraints->Measure(training->weights());
+  const int left = training->options().schedule.max_iterations - summary.iterations;
+  RunStagesOfAllWidths(training, std::max(left, 0));
+  summary.energy.max_albedo = constraints->Measure(training->Network());
 }
 
 // Goes back where the correction took more than the fit has gained since.
@@ -116,7 +117,7 @@ void ConserveEnergy(const FitProblem& problem, Training* training) {
   EnergySummary& energy = training->summary().energy;
   EnergyConstraints constraints(problem);
   const Timer timer;
-  energy.first_max_albedo = energy.max_albedo = constraints.Measure(training->weights());
+  energy.first_max_albedo = energy.max_albedo = constraints.Measure(training->Network());
   const double seconds = timer.Seconds();
   Conserving before;
   if (!training->solver().traits.is_stochastic) {
@@ -132,7 +133,7 @@ void ConserveEnergy(const FitProblem& problem, Training* training) {
   }
   if (energy.max_albedo < kClearlyConserved || !training->options().certify_energy) return;
   Correction correction = LowerToConserve(
-      problem.Shape(), [training] { return training->MayContinue(); }, &training->weights());
+      training->shape(), [training] { return training->MayContinue(); }, &training->weights());
   energy.correction = correction.change;
   energy.max_albedo = correction.max_albedo;
   energy.profile = std::move(correction.profile);

@@ -26,11 +26,11 @@ Fit Solve(const Brdf& material, const FitProblem& problem, const FitOptions& opt
   if (options.schedule.starts > 1) RunStarts(&training);
   const bool conserves = problem.terms.EnergyWeight() > 0.0;
   if (conserves && !training.solver().traits.is_stochastic) training.LimitTo(kFirstPart);
-  RunStages(&training, options.schedule.max_iterations);
+  RunStagesOfAllWidths(&training, options.schedule.max_iterations);
   training.LimitTo(1.0);
   if (conserves) ConserveEnergy(problem, &training);
   training.Finish();
-  return {NeuralBrdf(problem.Shape(), training.weights()), problem, training.summary()};
+  return {training.Network(), problem, training.summary()};
 }
 
 void CheckInitialWeights(const FitProblem& problem, const FitOptions& options) {
@@ -66,9 +66,9 @@ void ValidateFit(const FitProblem& problem, const FitOptions& options) {
   OptionFields(&copy).Check();
   const auto& [name, help, traits, minimize] = FindSolver(options.solver);
   const int weights = problem.Shape().num_weights();
-  if (traits.max_weights > 0 && weights > traits.max_weights) {
-    Fail("hidden: makes ", weights, " weights; a second-order solver takes at most ",
-         traits.max_weights, ", as its memory grows with their square");
+  if (traits.wide_solver.empty() && traits.max_weights > 0 && weights > traits.max_weights) {
+    Fail("hidden: makes ", weights, " weights; ", name, " takes at most ", traits.max_weights,
+         ", as its memory grows with their square");
   }
   if (traits.needs_squares && problem.terms.loss == Loss::kAbsolute) {
     Fail("loss: absolute isn't a sum of squares; it takes --solver=ceres_lbfgs or adam");

@@ -59,7 +59,10 @@ struct SolverTraits {
   bool is_stochastic = false;
   bool splits_curvature = false;  // sums J'J over a part of the samples (StageOptions)
   int max_weights = 0;            // whose square it holds in memory; 0: any number
-  int pace = 1;                   // iterations that do as much as one of Levenberg-Marquardt
+  // Starts with a narrow network (ScheduleOptions::first_weights), and leaves one of more than max_weights to the
+  // solver of this name; "": takes no more.
+  std::string_view wide_solver = "";
+  int pace = 1;  // iterations that do as much as one of Levenberg-Marquardt
 };
 
 struct Solver {

@@ -172,4 +172,12 @@ void RunStarts(Training* training) {
 
 void RunStages(Training* training, int max_iterations) { Stages(training).Run(max_iterations); }
 
+void RunStagesOfAllWidths(Training* training, int max_iterations) {
+  RunStages(training, max_iterations);
+  while (!training->HasAllWeights() && training->MayContinue()) {
+    training->TakeMoreWeights();
+    RunStages(training, max_iterations * training->solver().traits.pace);
+  }
+}
+
 }  // namespace pbnbrdf

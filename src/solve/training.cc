@@ -7,6 +7,7 @@
 #include "pbnbrdf/base/error.h"
 #include "problem/fit_target.h"
 #include "problem/initial_weights.h"
+#include "solve/widening.h"
 
 namespace pbnbrdf {
 namespace {
@@ -29,7 +30,8 @@ constexpr double kRoundingShare = 0.01;  // FitSummary::precision_limited
 
 constexpr std::size_t kStartSamples = 1024;  // on which a start is judged
 constexpr int kMaxRestarts = 5;  // in a row; then the problem is at fault, not the start
-constexpr std::uint64_t kIndexSeed = 0xbf58476d1ce4e5b9, kRestartSeed = 0x94d049bb133111eb;
+constexpr std::uint64_t kIndexSeed = 0xbf58476d1ce4e5b9, kRestartSeed = 0x94d049bb133111eb,
+                        kWideningSeed = 0xd6e8feb86659fd93;
 constexpr double kRoundingSpread = 1e-6;  // of a constant network in single precision
 
 // A fault of a start that others may share: the material isn't constant, but the network is and stays so,
@@ -99,10 +101,22 @@ FitProblem WithoutEnergy(FitProblem problem) {
   return problem;
 }
 
-FitProblem FirstProblem(FitProblem problem, const Solver& solver) {
-  if (!solver.traits.is_stochastic) return WithoutEnergy(problem);
+FitProblem FirstProblem(FitProblem problem, const FitOptions& options) {
+  const SolverTraits& traits = FindSolver(options.solver).traits;
+  if (!traits.wide_solver.empty() && options.initial_weights.empty()) {
+    problem.network.hidden = NarrowedHidden(problem.Shape(), options.schedule.first_weights);
+  }
+  if (!traits.is_stochastic) return WithoutEnergy(problem);
   problem.terms.loss = Loss::kAbsolute;
   return problem;
+}
+
+// The solver that is asked for, or the one that it leaves so many weights to.
+const Solver& SolverFor(const FitOptions& options, const NetworkShape& shape) {
+  const Solver& solver = FindSolver(options.solver);
+  const bool is_wide =
+      !solver.traits.wide_solver.empty() && shape.num_weights() > solver.traits.max_weights;
+  return is_wide ? FindSolver(solver.traits.wide_solver) : solver;
 }
 
 void DrawInto(SampleStream* stream, std::size_t count, EncodedSamples* samples) {
@@ -115,8 +129,9 @@ void DrawInto(SampleStream* stream, std::size_t count, EncodedSamples* samples) 
 
 Training::Training(const Brdf& material, const FitProblem& problem, const FitOptions& options)
     : options_(options),
-      solver_(FindSolver(options.solver)),
-      problem_(FirstProblem(problem, solver_)),
+      hidden_(problem.network.hidden),
+      problem_(FirstProblem(problem, options)),
+      solver_(&SolverFor(options, problem_.Shape())),
       target_(FitTarget(material, *problem.network.encoding)),
       stream_(*target_, SampleSet::kTraining, problem.sampling.Angles(), problem.sampling.seed,
               options.expected),
@@ -131,17 +146,25 @@ Training::Training(const Brdf& material, const FitProblem& problem, const FitOpt
   SampleStream validation_stream = stream_.WithSeed(problem.sampling.seed + kValidationSeed);
   DrawInto(&validation_stream, kValidationSamples, &validation_samples_);
   const std::size_t first = std::min<std::size_t>(options.schedule.first_samples, max_samples_);
-  DrawInto(&stream_, solver_.traits.is_stochastic ? max_samples_ : first, &samples_);
-  objective_ = MakeObjective(problem_, options.precision, samples_,
-                             std::min(kStartSamples, samples_.size()));
-  validation_ = MakeObjective(WithoutEnergy(problem_), options.precision, validation_samples_,
-                              validation_samples_.size());
+  DrawInto(&stream_, solver_->traits.is_stochastic ? max_samples_ : first, &samples_);
   summary_.final_cost = std::numeric_limits<double>::infinity();
-  if (!options.on_iteration || !options.reports_heldout_error) return;
+  if (options.on_iteration && options.reports_heldout_error) {
+    timer_.Exclude([&] {
+      heldout_samples_.Add(HeldOutSamples(material, kHeldOutSamples, kHeldOutSeed));
+      return true;
+    });
+  }
+  MakeObjectives(std::min(kStartSamples, samples_.size()));
+}
+
+void Training::MakeObjectives(std::size_t count) {
+  const FitProblem unseen = WithoutEnergy(problem_);
+  const Precision precision = options_.precision;
+  objective_ = MakeObjective(problem_, precision, samples_, count);
+  validation_ = MakeObjective(unseen, precision, validation_samples_, validation_samples_.size());
+  if (heldout_samples_.size() == 0) return;
   timer_.Exclude([&] {
-    heldout_samples_.Add(HeldOutSamples(material, kHeldOutSamples, kHeldOutSeed));
-    heldout_ = MakeObjective(WithoutEnergy(problem_), options.precision, heldout_samples_,
-                             heldout_samples_.size());
+    heldout_ = MakeObjective(unseen, precision, heldout_samples_, heldout_samples_.size());
     return true;
   });
 }
@@ -152,8 +175,8 @@ void Training::Start() {
   } else if (const auto fault = FaultOf(weights_, samples_, objective_.get()); !fault.empty()) {
     Fail("initial_weights: ", fault);
   }
-  objective_->Grow(solver_.traits.is_stochastic ? std::min(kStochasticCostSamples, samples_.size())
-                                                : samples_.size());
+  objective_->Grow(solver_->traits.is_stochastic ? std::min(kStochasticCostSamples, samples_.size())
+                                                 : samples_.size());
 }
 
 void Training::StartAnew(int index) {
@@ -181,8 +204,34 @@ void Training::TakeMoreSamples() {
   objective_->Grow(samples_.size());
 }
 
+void Training::TakeMoreWeights() {
+  const double grown = options_.schedule.growth * shape().num_weights();
+  const double wanted = std::min(grown, static_cast<double>(solver_->traits.max_weights));
+  FitProblem all = problem_;
+  all.network.hidden = hidden_;
+  const std::vector<int> hidden = NarrowedHidden(all.Shape(), static_cast<std::size_t>(wanted));
+  WidenTo(hidden == problem_.network.hidden ? hidden_ : hidden);
+}
+
+void Training::TakeAllWeights() {
+  if (!HasAllWeights()) WidenTo(hidden_);
+}
+
+void Training::WidenTo(std::vector<int> hidden) {
+  const NetworkShape narrow = shape();
+  problem_.network.hidden = std::move(hidden);
+  const std::vector<double> fresh =
+      InitialWeights(shape(), samples_.samples(), problem_.sampling.seed + kWideningSeed,
+                     problem_.network.initialization);
+  weights_ = Widen(narrow, weights_, shape(), fresh);
+  solver_ = &SolverFor(options_, shape());
+  curvature_samples_ = options_.schedule.curvature_samples;
+  radius_ = kFirstTrustRegionRadius;
+  MakeObjectives(samples_.size());
+}
+
 bool Training::HasPartOfCurvature() const {
-  return solver_.traits.splits_curvature && !HasEnergy() && curvature_samples_ < samples_.size();
+  return solver_->traits.splits_curvature && !HasEnergy() && curvature_samples_ < samples_.size();
 }
 
 void Training::GrowCurvature(std::size_t times) {
@@ -215,8 +264,8 @@ double Training::Minimize(int max_iterations,
     return last - kLeadTime * (before - last);
   };
   stage.on_iteration = std::move(on_iteration);
-  const StageResult result =
-      solver_.minimize({problem_, options_, samples_, strata_, objective_.get()}, stage, &weights_);
+  const StageResult result = solver_->minimize(
+      {problem_, options_, samples_, strata_, objective_.get()}, stage, &weights_);
   if (std::isfinite(result.cost)) summary_.final_cost = result.cost;
   radius_ = std::max(result.last_radius, kFirstTrustRegionRadius);
   summary_.iterations += result.iterations;
@@ -246,9 +295,10 @@ double Training::RecordError(int iteration) {
 }
 
 void Training::Finish() {
+  summary_.energy.work = objective_->energy_work();
+  TakeAllWeights();
   summary_.seconds = timer_.Seconds();
   summary_.samples = samples_.size();
-  summary_.energy.work = objective_->energy_work();
   summary_.precision_limited = options_.precision == Precision::kSingle && !AgreesInDouble();
 }
 

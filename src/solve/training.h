@@ -17,7 +17,11 @@ class Training {
   // stochastic. material and options must outlive this.
   Training(const Brdf& material, const FitProblem& problem, const FitOptions& options);
 
-  const Solver& solver() const { return solver_; }
+  // Of the network as it is now.
+  const Solver& solver() const { return *solver_; }
+  NetworkShape shape() const { return problem_.Shape(); }
+  NeuralBrdf Network() const { return {shape(), weights_}; }
+
   const FitOptions& options() const { return options_; }
   FitSummary& summary() { return summary_; }
   std::vector<double>& weights() { return weights_; }
@@ -41,6 +45,11 @@ class Training {
 
   bool HasAllSamples() const { return samples_.size() == max_samples_; }
   void TakeMoreSamples();
+
+  // A wider network is the same function at first.
+  bool HasAllWeights() const { return problem_.network.hidden == hidden_; }
+  void TakeMoreWeights();
+  void TakeAllWeights();
 
   // Whether J'J is summed over a part of the samples, and may be over more of them: not with the energy
   // term, whose rounds needn't be exact.
@@ -70,13 +79,17 @@ class Training {
   void Finish();
 
  private:
+  // Of the first `count` samples.
+  void MakeObjectives(std::size_t count);
+  void WidenTo(std::vector<int> hidden);
   double SecondsLeft() const;  // until the clock ends the fit
   bool AgreesInDouble();
 
   Timer timer_, wall_timer_;  // without what isn't to be counted, and all
   const FitOptions& options_;
-  const Solver& solver_;
+  const std::vector<int> hidden_;  // of the network in the end
   FitProblem problem_;
+  const Solver* solver_;
   std::shared_ptr<const Brdf> target_;
   SampleStream stream_;
   std::size_t max_samples_;
@@ -95,6 +108,9 @@ void RunStarts(Training* training);
 
 // Minimises from where the last stage ended, on the samples so far and then on more and more.
 void RunStages(Training* training, int max_iterations);
+
+// The same again for each width, up to the problem's, that there is time for.
+void RunStagesOfAllWidths(Training* training, int max_iterations);
 
 // Brings all directional albedos to at most 1: by stages with the energy term (eq. 5) and, where that isn't
 // enough, by lowering the network as a whole. problem: with the energy term's weight to begin with. A fit that the

@@ -30,11 +30,15 @@ struct ScheduleOptions {
   // slowly, up to all. Adam has all from the start.
   std::uint64_t first_samples = 1000;
   double growth = 3.0;  // > 1
+  // lm fits a network of more weights than this as a narrower one first, and gives it `growth` times as many each
+  // time that neither samples nor iterations help, up to all; >= 1.
+  std::uint64_t first_weights = 1000;
   // Short runs from different random weights, of which the best one goes on; >= 1, Adam: 1.
   int starts = 1;
   // lm sums J'J over about so many of the samples, others each time (linearization.h); >= 1.
   std::uint64_t curvature_samples = 4096;
-  int max_iterations = 400;     // >= 0, without the energy term, and again with it; Adam: epochs
+  // >= 0, of each width without the energy term, and again with it; Adam: epochs
+  int max_iterations = 400;
   double max_seconds = 3600.0;  // > 0
   // Stop when all samples are in and 25 iterations take less than this part off the error of samples that
   // no solver sees, or of 1e-4 where that is larger; [0, 1]. Not for Adam.
@@ -52,7 +56,8 @@ struct AdamOptions {
 
 struct FitOptions {
   // By name:
-  //   lm           Levenberg-Marquardt on the normal equations (lm.cc)
+  //   lm           Levenberg-Marquardt on the normal equations (lm.cc); ceres_lbfgs ends fits of more than
+  //                2500 weights, whose narrower networks it has fitted
   //   ceres_lm     Ceres' own: the same steps, at several times the cost
   //   ceres_lbfgs  Ceres' L-BFGS: cheap iterations, but thousands of them
   //   adam         on minibatches of the papers' own loss (adam.cc), the published solver
