@@ -2,6 +2,8 @@
 add_library(pbnbrdf_warnings INTERFACE)
 target_compile_options(pbnbrdf_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+                       # It takes sources that are compiled as one for headers.
+                       $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>
                        $<$<BOOL:${PBNBRDF_WERROR}>:-Werror>)
 if(PBNBRDF_SANITIZE)
   add_compile_options(-fsanitize=${PBNBRDF_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

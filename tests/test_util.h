@@ -8,17 +8,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "base/pi.h"
 #include "base/text.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
-
-inline constexpr double kPi = std::numbers::pi;
 
 // A file in the folder of reference data; skips the test if it is absent.
 #define PBNBRDF_REFERENCE_FILE(variable, name)                                     \

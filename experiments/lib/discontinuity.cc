@@ -1,15 +1,15 @@
 #include "discontinuity.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "image/srgb.h"
 #include "pbnbrdf/brdf/half_diff.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
+constexpr double kDegree = kPi / 180.0;
 
 double ShownDifference(const Brdf& brdf, double theta_h, double theta_d) {
   const DirectionPair pairs[] = {

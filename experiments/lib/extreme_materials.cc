@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 #include <string>
 
+#include "base/pi.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/models/builtin.h"
 #include "pbnbrdf/sources/merl.h"
@@ -13,7 +13,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
 
 using ValueOf = std::function<Rgb(const DirectionPair&)>;

@@ -1,13 +1,10 @@
 #include "hard_pairs.h"
 
-#include <numbers>
-
+#include "base/pi.h"
 #include "pbnbrdf/brdf/half_diff.h"
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 void AddGrid(const std::vector<double>& thetas, const std::vector<double>& phis,
              std::vector<DirectionPair>* pairs) {

@@ -6,16 +6,15 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <numbers>
 #include <optional>
 
 #include "base/parallel.h"
+#include "base/pi.h"
 #include "pbnbrdf/brdf/merl_rows.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kHorizon = 0.5 * kPi - 1e-9;  // nearly
 constexpr int kMaximaSteps = 3;                // of successive parabolic interpolation
 

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "base/pi.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kThetaH = 32, kThetaD = 18, kPhiD = 18, kPhiH = 18;
 
 // The cell of x in [0, 1], of so many.

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "brdf/half_vector_cells.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Vec3 DrawCosine(const std::array<double, 2>& u) {
   const double r = std::sqrt(u[0]), phi = 2.0 * kPi * u[1];

@@ -1,9 +1,9 @@
 // The tables of a Brdf's density (importance_sampler.h).
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "base/pi.h"
 #include "brdf/half_vector_cells.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/albedo.h"
@@ -11,7 +11,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kThetas[] = {5.0, 20.0, 35.0, 50.0, 65.0, 78.0};  // degrees, to find the spread
 constexpr double kLeastSpread = 1e-9, kMostSpread = 0.25;
 constexpr int kInside = 2;  // points in a cell, each way

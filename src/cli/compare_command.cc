@@ -62,7 +62,7 @@ struct Measured {
   std::optional<double> lpips;  // if it is asked for
 };
 
-Json ToJson(const Measured& measured) {
+Json MeasuredJson(const Measured& measured) {
   Json json;
   for (const Measure& measure : kMeasures) {
     const double value = measured.errors.*measure.value;
@@ -139,7 +139,7 @@ int RunCompare(const CompareOptions& options, const Arguments& arguments) {
   CheckOutputs({{"error_map", options.error_map}});
   const Measured measured = Compare(options, arguments[0], arguments[1]);
   if (options.json) {
-    std::cout << JsonText(ToJson(measured));
+    std::cout << JsonText(MeasuredJson(measured));
   } else {
     PrintText(measured);
   }

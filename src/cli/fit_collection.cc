@@ -25,16 +25,16 @@ constexpr char kTable[] = "fits";  // the name of the table's files
 constexpr std::uintmax_t kMaxJsonBytes = std::uintmax_t{1} << 24;
 
 // The columns of the table that come from a fit's summary.
-constexpr const char* kMeasures[] = {"mean_abs_log_error",
-                                     "relative_error",
-                                     "reciprocal_floor",
-                                     "max_directional_albedo",
-                                     "energy",
-                                     "delta_e_mean",
-                                     "parameters",
-                                     "iterations",
-                                     "termination",
-                                     "seconds"};
+constexpr const char* kListedMeasures[] = {"mean_abs_log_error",
+                                           "relative_error",
+                                           "reciprocal_floor",
+                                           "max_directional_albedo",
+                                           "energy",
+                                           "delta_e_mean",
+                                           "parameters",
+                                           "iterations",
+                                           "termination",
+                                           "seconds"};
 
 enum class State { kWaiting, kKept, kFitted, kFailed };
 
@@ -241,7 +241,7 @@ class Collection {
 
   void WriteTable() const {
     std::string csv = "name,source,state,why";
-    for (const char* measure : kMeasures) csv += StrCat(",", measure);
+    for (const char* measure : kListedMeasures) csv += StrCat(",", measure);
     csv += "\n";
     Json rows = Json::array();
     double fit_seconds = 0.0;
@@ -253,7 +253,7 @@ class Collection {
                   {"source", entry.source},
                   {"state", NameOf(kStates, entry.state)},
                   {"why", entry.why}};
-      for (const char* measure : kMeasures) {
+      for (const char* measure : kListedMeasures) {
         const Json value = entry.summary.is_null() ? Json() : entry.summary.value(measure, Json());
         csv += StrCat(",", CsvField(value));
         row[measure] = value;

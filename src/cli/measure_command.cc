@@ -49,7 +49,7 @@ Fields MeasureCommandFields(MeasureCommandOptions* options) {
   return fields;
 }
 
-Json ToJson(const EnergyProof& proof) {
+Json ProofJson(const EnergyProof& proof) {
   return {{"is_proved", proof.IsProved()},
           {"max_directional_albedo", proof.bound},
           {"proved_part", proof.proved_part},
@@ -103,7 +103,7 @@ int RunMeasure(const MeasureCommandOptions& options, const Arguments&) {
   std::string text = MeasuresText(measures);
   if (options.prove) {
     const EnergyProof proof = Prove(*network, options.proof);
-    measures["energy_proof"] = ToJson(proof);
+    measures["energy_proof"] = ProofJson(proof);
     text += ProofText(proof, *network);
   }
   std::cout << (options.json ? JsonText(measures) : text);

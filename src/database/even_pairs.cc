@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/brdf/half_diff.h"
 
 namespace pbnbrdf {
@@ -17,7 +17,6 @@ std::array<double, 3> EvenPoint(int n) {
 }
 
 std::vector<DirectionPair> EvenPairs(std::size_t count, double smallest_cosine) {
-  constexpr double kPi = std::numbers::pi;
   std::vector<DirectionPair> pairs;
   for (int n = 1; pairs.size() < count; ++n) {
     const auto [h, d, p] = EvenPoint(n);

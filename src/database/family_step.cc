@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXf, Eigen::VectorXd;
 
-constexpr int kMaxIterations = 40;
-constexpr double kTolerance = 1e-3;  // of the preconditioned residual's square
+constexpr int kMaxConjugateSteps = 40;
+constexpr double kResidualTolerance = 1e-3;  // of the preconditioned residual's square
 // The damping is at least so much of the largest: of weights, of codes.
 constexpr double kMinWeightDamping = 1e-9, kMinCodeDamping = 1e-6;
 constexpr float kRounding = 1e-5f,
@@ -133,7 +133,7 @@ FamilyStep DampedStep(const FamilyPoint& point, const FamilyLinearization& at, d
   FamilyPoint rest = Sum(step, -1.0, gradient), solved = model.Solve(rest), direction = solved;
   double square = Dot(rest, solved);
   const double first = square;
-  for (int k = 0; k < kMaxIterations && square > kTolerance * first; ++k) {
+  for (int k = 0; k < kMaxConjugateSteps && square > kResidualTolerance * first; ++k) {
     const FamilyPoint product = model.Times(direction);
     const double curvature = Dot(direction, product);
     if (!(curvature > 0.0)) break;

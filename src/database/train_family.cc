@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr std::uint64_t kSamples = 3000;  // of each material, by default
+constexpr std::uint64_t kSamplesOfEach = 3000;  // of each material, by default
 constexpr double kLossScale = 0.01;
 // J'J is summed over so many of them: of all materials together that is plenty for each weight.
 constexpr std::size_t kCurvatureSamples = 1500;
@@ -283,7 +283,7 @@ void Validate(std::span<const DatabaseMaterial> materials, const FitProblem& pro
 
 FitProblem FamilyProblem() {
   FitProblem problem;
-  problem.sampling.samples = kSamples;
+  problem.sampling.samples = kSamplesOfEach;
   problem.terms.loss_scale = kLossScale;
   return problem;
 }

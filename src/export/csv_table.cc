@@ -1,6 +1,6 @@
-#include <numbers>
 #include <vector>
 
+#include "base/pi.h"
 #include "base/text.h"
 #include "export/formats.h"
 #include "pbnbrdf/brdf/half_diff.h"
@@ -8,7 +8,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kThetaH = 45, kThetaD = 18, kPhiD = 24, kPhiH = 12;
 
 struct PairAngles {

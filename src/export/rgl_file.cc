@@ -2,9 +2,9 @@
 // backscattering, as in the measurements [1, section 3]: light that returns was reflected by normals that face it.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "base/pi.h"
 #include "export/formats.h"
 #include "export/primaries.h"
 #include "pbnbrdf/brdf/luminance.h"
@@ -14,7 +14,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // The sizes of the database's files. Anisotropic ones have a node of phi_i every 22.5 degrees.
 constexpr std::size_t kThetaI = 8, kAnisotropicPhiI = 17, kNormals = 128, kColors = 32;
 // Rows of the density of normals, both ends of the circle among them.

@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kLuminance = "Y";
 constexpr int kMaxSide = 1 << 16;  // pixels, four times the width of a 16K environment map
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
+constexpr std::uintmax_t kMaxExrBytes = std::uintmax_t{4} << 30;
 constexpr float kSameChromaticity = 1e-4f;
 
 using Channels = std::array<const char*, 3>;
@@ -176,10 +176,10 @@ void CheckLatLong(const std::string& path, const Imf::Header& header) {
 }
 
 // A file's bytes, for OpenEXR: so that it may be a pipe.
-class MemoryStream : public Imf::IStream {
+class MemoryInput : public Imf::IStream {
  public:
-  explicit MemoryStream(const std::string& path)
-      : IStream(path.c_str()), bytes_(ReadFile(path, kMaxFileBytes)) {}
+  explicit MemoryInput(const std::string& path)
+      : IStream(path.c_str()), bytes_(ReadFile(path, kMaxExrBytes)) {}
 
   bool read(char to[], int count) override {
     if (bytes_.copy(to, std::size_t(count), at_) != std::size_t(count)) {
@@ -203,7 +203,7 @@ StoredImage Read(const std::string& path, bool is_environment) {
   Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);
   Imf::Header::setMaxTileSize(kMaxSide, kMaxSide);
   return TranslateExrErrors(path + ": truncated or damaged OpenEXR file: ", [&] {
-    MemoryStream bytes(path);
+    MemoryInput bytes(path);
     Imf::MultiPartInputFile file(bytes);
     const int part = ColorPart(file);
     if (is_environment) CheckLatLong(path, file.header(part));

@@ -18,9 +18,9 @@ constexpr const char* kChannels[] = {"R", "G", "B"};
 constexpr std::size_t kMaxNameBytes = 255;  // OpenEXR's own limit
 
 // What OpenEXR writes to, as it wants to go back and fill in where the lines are.
-class MemoryStream : public Imf::OStream {
+class MemoryOutput : public Imf::OStream {
  public:
-  MemoryStream() : Imf::OStream("image") {}
+  MemoryOutput() : Imf::OStream("image") {}
 
   void write(const char c[], int n) override {
     const std::size_t end = at_ + static_cast<std::size_t>(n);
@@ -52,7 +52,7 @@ Imf::Header MakeHeader(const Image& image, const std::map<std::string, std::stri
   return header;
 }
 
-void WritePixels(const Image& image, const Imf::Header& header, MemoryStream& stream) {
+void WritePixels(const Image& image, const Imf::Header& header, MemoryOutput& stream) {
   Imf::OutputFile file(stream, header);
   constexpr std::size_t kStride = 3 * sizeof(float);
   Imf::FrameBuffer buffer;
@@ -68,7 +68,7 @@ void WritePixels(const Image& image, const Imf::Header& header, MemoryStream& st
 }  // namespace
 
 std::string ExrBytes(const Image& image, const std::map<std::string, std::string>& metadata) {
-  MemoryStream stream;
+  MemoryOutput stream;
   TranslateExrErrors(StrCat("an image of ", image.width, " x ", image.height, " pixels: "),
                      [&] { WritePixels(image, MakeHeader(image, metadata), stream); });
   return stream.TakeBytes();

@@ -18,7 +18,7 @@ namespace pbnbrdf {
 namespace {
 
 // More than twice kMaxPixels pixels of 16-bit RGB without compression.
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(1) << 31;
+constexpr std::uintmax_t kMaxPngBytes = std::uintmax_t(1) << 31;
 constexpr std::size_t kSignatureBytes = 8;
 
 // One file being read: what libpng's callbacks see. libpng reports errors by a jump back, so that
@@ -122,7 +122,7 @@ Image ReadPng(const std::string& path) {
       png_sig_cmp(reinterpret_cast<png_const_bytep>(start.data()), 0, kSignatureBytes) != 0) {
     Fail(path, ": not a PNG file");
   }
-  Reader reader(ReadFile(path, kMaxFileBytes));
+  Reader reader(ReadFile(path, kMaxPngBytes));
   if (!ReadHeader(reader)) Fail(path, ": truncated or damaged PNG file: ", reader.message);
   const std::size_t width = png_get_image_width(reader.png, reader.info);
   const std::size_t height = png_get_image_height(reader.png, reader.info);

@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/pi.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/metrics/color.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDarkLuminance = 0.1;
-constexpr double kPercentile = 0.95;
+constexpr double kVisiblePercentile = 0.95;
 
 std::vector<Rgb> ValuesAt(std::span<const BrdfSample> samples, const Brdf& brdf) {
   std::vector<DirectionPair> pairs;
@@ -35,7 +34,7 @@ Rgb LitColor(const Rgb& f, double cos_i) {
   return color;
 }
 
-double Mean(const std::vector<double>& values) {
+double MeanOrZero(const std::vector<double>& values) {
   double sum = 0.0;
   for (double value : values) sum += value;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
@@ -44,7 +43,7 @@ double Mean(const std::vector<double>& values) {
 // The least of the values that so many of them don't exceed; NaN counts as the largest.
 double Percentile(std::vector<double> values) {
   if (values.empty()) return 0.0;
-  const double rank = std::ceil(kPercentile * static_cast<double>(values.size()));
+  const double rank = std::ceil(kVisiblePercentile * static_cast<double>(values.size()));
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
   std::nth_element(values.begin(), at, values.end(),
                    [](double x, double y) { return std::isnan(y) ? !std::isnan(x) : x < y; });
@@ -158,9 +157,9 @@ ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf
   ColorErrors errors;
   errors.samples = delta_e.size();
   errors.dark_samples = dark.size();
-  errors.delta_e_mean = Mean(delta_e);
+  errors.delta_e_mean = MeanOrZero(delta_e);
   errors.delta_e_p95 = Percentile(std::move(delta_e));
-  errors.dark_hue_chroma_mean = Mean(dark);
+  errors.dark_hue_chroma_mean = MeanOrZero(dark);
   errors.dark_hue_chroma_p95 = Percentile(std::move(dark));
   return errors;
 }

@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "base/median.h"
 #include "base/parallel.h"
+#include "base/pi.h"
 #include "base/uniform.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/brdf/scattered.h"
@@ -18,7 +18,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kPairs = 10000;      // of random directions
 constexpr std::size_t kNeighbours = 1000;  // measurements whose neighbours are looked for
 // Sine of the angle between a direction and the plane: rounding of text.

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/pi.h"
 #include "metrics/planes.h"
 #include "pbnbrdf/metrics/color.h"
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Luminance, red-green and blue-yellow, a plane each, in which white is 1, 0 and 0. The published scales and
 // offsets of YCxCz cancel, as the filters' weights add up to 1.
@@ -175,7 +174,7 @@ Image ToneMapped(const Image& image, double exposure) {
 
 // Half of the luminances are below it; as [2]'s authors' program has it: the mean of those of rank
 // floor(n / 2) and the next (counted from 1), whether n is even or odd.
-double Median(std::vector<double> values) {
+double MedianLuminance(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t upper = values.size() / 2, lower = upper == 0 ? 0 : upper - 1;
   return 0.5 * (values[lower] + values[upper]);
@@ -211,7 +210,7 @@ FlipExposures ReferenceExposures(const Image& reference) {
   }
   const double largest = *std::max_element(luminances.begin(), luminances.end());
   if (!(largest > 0.0)) return {};
-  const double median = std::max(Median(luminances), kLeastMedian);
+  const double median = std::max(MedianLuminance(luminances), kLeastMedian);
 
   // The positive x with ToneCurve(x) = 0.85.
   constexpr double kShown = 0.85;

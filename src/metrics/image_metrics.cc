@@ -97,7 +97,7 @@ double MeanDeltaE(const Image& reference, const Image& test) {
   return sum / (double(reference.width) * double(reference.height));
 }
 
-double Mean(const std::vector<double>& values) {
+double MeanError(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
@@ -162,9 +162,9 @@ ImageErrors CompareImages(const Image& reference, const Image& test) {
 
   const Image linear_reference = ShownLinear(reference, errors.exposure);
   const Image linear_test = ShownLinear(test, errors.exposure);
-  errors.flip = Mean(FlipMap(linear_reference, linear_test));
+  errors.flip = MeanError(FlipMap(linear_reference, linear_test));
   errors.delta_e_2000 = MeanDeltaE(linear_reference, linear_test);
-  errors.hdr_flip = Mean(HdrFlipMap(reference, test));
+  errors.hdr_flip = MeanError(HdrFlipMap(reference, test));
   return errors;
 }
 

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/base/error.h"
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double Fresnel(const SgdParameters& m, double u) {
   return m.f0 + (1.0 - m.f0) * std::pow(1.0 - u, 5) - m.f1 * u;

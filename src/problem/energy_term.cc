@@ -12,7 +12,7 @@ namespace pbnbrdf {
 namespace {
 
 constexpr int kChannels = NetworkShape::kChannels;
-constexpr int kBatch = kernels::kBatch;
+using kernels::kBatch;
 
 bool AnyAbove(const Rgb& values, double bound) {
   return std::any_of(values.begin(), values.end(), [&](double v) { return !(v <= bound); });

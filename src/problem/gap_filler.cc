@@ -12,7 +12,7 @@ constexpr double kOffset = 0.03;
 constexpr double kMinRatio = -0.99;  // a value that ScatteredBrdf takes
 // Of the model's fit, which takes a few tenths of a second: more of any doesn't make gaps better. A second lobe
 // helps where it explains something (Cornell's paints: a fifth to a half of the cost), and harms where it doesn't.
-constexpr std::size_t kMaxSamples = 400, kBrightest = 100;
+constexpr std::size_t kMaxFitted = 400, kBrightest = 100;
 const AnalyticFitOptions kOptions = {.lobes = 2,
                                      .loss_scale = 0.01,
                                      .first_samples = 100,
@@ -24,14 +24,14 @@ const AnalyticFitOptions kOptions = {.lobes = 2,
 // Of the measurements, the brightest ones, as a peak is easily missed, and of the others every so many.
 std::vector<BrdfSample> Some(std::span<const BrdfSample> measurements) {
   std::vector<BrdfSample> some(measurements.begin(), measurements.end());
-  if (some.size() <= kMaxSamples) return some;
+  if (some.size() <= kMaxFitted) return some;
   std::stable_sort(some.begin(), some.end(), [](const BrdfSample& a, const BrdfSample& b) {
     return Largest(a.value) > Largest(b.value);
   });
-  const std::size_t rest = some.size() - kBrightest, wanted = kMaxSamples - kBrightest;
+  const std::size_t rest = some.size() - kBrightest, wanted = kMaxFitted - kBrightest;
   for (std::size_t k = 0; k < wanted; ++k)
     some[kBrightest + k] = some[kBrightest + k * rest / wanted];
-  some.resize(kMaxSamples);
+  some.resize(kMaxFitted);
   return some;
 }
 

@@ -10,7 +10,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr int kBatch = kernels::kBatch;
+using kernels::kBatch;
 
 }  // namespace
 

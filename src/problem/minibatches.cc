@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "base/pi.h"
 #include "base/uniform.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kBatch = kernels::kBatch;
-constexpr std::size_t kMaxSamples = 1 << 15;  // drawn at once: they stay in the cache
-constexpr int kEnergySets = 4;                // drawn with them
+constexpr std::size_t kBlock = kernels::kBatch;
+constexpr std::size_t kMaxDrawn = 1 << 15;  // drawn at once: they stay in the cache
+constexpr int kEnergySets = 4;              // drawn with them
 
 }  // namespace
 
@@ -31,8 +30,8 @@ MinibatchStream::MinibatchStream(const FitProblem& problem, const EncodedSamples
   const double scale = static_cast<double>(samples.size()) / total_weight;
   rows_.reserve(samples.size() * Minibatches::kRows);
   for (std::size_t n = 0; n < samples.size(); ++n) {
-    const double* input = samples.inputs().batch(n / kBatch) + n % kBatch;
-    for (int i = 0; i < kEncodedSize; ++i) rows_.push_back(static_cast<float>(input[i * kBatch]));
+    const double* input = samples.inputs().batch(n / kBlock) + n % kBlock;
+    for (int i = 0; i < kEncodedSize; ++i) rows_.push_back(static_cast<float>(input[i * kBlock]));
     rows_.push_back(static_cast<float>(samples.cos_i(n)));
     for (double f : samples.samples()[n].value) rows_.push_back(static_cast<float>(f));
     rows_.push_back(static_cast<float>(scale * samples.weight(n)));
@@ -43,14 +42,14 @@ MinibatchStream::MinibatchStream(const FitProblem& problem, const EncodedSamples
 void MinibatchStream::Draw(Minibatches* to) {
   const std::size_t per_epoch = order_.size() / batch_;
   to->batch = batch_;
-  to->count = std::clamp<std::size_t>(kMaxSamples / batch_, 1, per_epoch - next_);
-  to->samples.resize(to->count * to->BlocksPerStep() * Minibatches::kRows * kBatch);
+  to->count = std::clamp<std::size_t>(kMaxDrawn / batch_, 1, per_epoch - next_);
+  to->samples.resize(to->count * to->BlocksPerStep() * Minibatches::kRows * kBlock);
   float* block = to->samples.data();
   for (std::size_t b = 0; b < to->count; ++b, ++next_) {
     const std::span<const std::uint32_t> drawn = DrawIndices(next_ * batch_);
-    for (std::size_t first = 0; first < batch_; first += kBatch) {
-      CopyBlock(drawn.subspan(first, std::min(kBatch, batch_ - first)), block);
-      block += Minibatches::kRows * kBatch;
+    for (std::size_t first = 0; first < batch_; first += kBlock) {
+      CopyBlock(drawn.subspan(first, std::min(kBlock, batch_ - first)), block);
+      block += Minibatches::kRows * kBlock;
     }
   }
   to->ends_epoch = next_ == per_epoch;
@@ -84,10 +83,10 @@ std::span<const std::uint32_t> MinibatchStream::DrawIndices(std::size_t first) {
 void MinibatchStream::CopyBlock(std::span<const std::uint32_t> indices, float* block) const {
   for (std::size_t n = 0; n < indices.size(); ++n) {
     const float* row = rows_.data() + std::size_t{indices[n]} * Minibatches::kRows;
-    for (int i = 0; i < Minibatches::kRows; ++i) block[i * kBatch + n] = row[i];
+    for (int i = 0; i < Minibatches::kRows; ++i) block[i * kBlock + n] = row[i];
   }
-  for (int i = 0; i < Minibatches::kRows && indices.size() < kBatch; ++i) {
-    std::fill(block + i * kBatch + indices.size(), block + (i + 1) * kBatch, 0.0f);
+  for (int i = 0; i < Minibatches::kRows && indices.size() < kBlock; ++i) {
+    std::fill(block + i * kBlock + indices.size(), block + (i + 1) * kBlock, 0.0f);
   }
 }
 
@@ -98,7 +97,7 @@ void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
   const double phi_i = IsIsotropic(encoding_) ? 0.0 : 2.0 * kPi * Uniform(random_);
   const Vec3 wi = FromSpherical(std::acos(cos_i), phi_i);
   const double shift_t = Uniform(random_), shift_phi = Uniform(random_);
-  const std::size_t first_block = to->nodes.size() / (Minibatches::kNodeRows * kBatch);
+  const std::size_t first_block = to->nodes.size() / (Minibatches::kNodeRows * kBlock);
   std::size_t nodes = 0;
   for (int i = 0; i < n_theta; ++i) {
     const double t = (i + shift_t) / n_theta, theta_h = 0.5 * kPi * t * t;
@@ -109,18 +108,18 @@ void MinibatchStream::DrawAlbedo(double cos_i, Minibatches* to) {
       const double cos_d = Dot(wi, h);
       const Vec3 wo = 2.0 * cos_d * h - wi;
       if (!(wo.z > 0.0) || !(cos_d > 0.0)) continue;
-      const std::size_t place = nodes++ % kBatch;
-      if (place == 0) to->nodes.resize(to->nodes.size() + Minibatches::kNodeRows * kBatch, 0.0f);
-      float* block = to->nodes.data() + to->nodes.size() - Minibatches::kNodeRows * kBatch;
+      const std::size_t place = nodes++ % kBlock;
+      if (place == 0) to->nodes.resize(to->nodes.size() + Minibatches::kNodeRows * kBlock, 0.0f);
+      float* block = to->nodes.data() + to->nodes.size() - Minibatches::kNodeRows * kBlock;
       const auto input = Encode(encoding_, {wi, wo});
       for (int k = 0; k < kEncodedSize; ++k)
-        block[k * kBatch + place] = static_cast<float>(input[k]);
+        block[k * kBlock + place] = static_cast<float>(input[k]);
       const double solid_angle_h = sin_h * kPi * t / n_theta * (2.0 * kPi / n_phi);
-      block[Minibatches::kWeight * kBatch + place] =
+      block[Minibatches::kWeight * kBlock + place] =
           static_cast<float>(wo.z * 4.0 * cos_d * solid_angle_h);
     }
   }
-  to->albedos.push_back({first_block, (nodes + kBatch - 1) / kBatch});
+  to->albedos.push_back({first_block, (nodes + kBlock - 1) / kBlock});
 }
 
 }  // namespace pbnbrdf

@@ -10,8 +10,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr int kChannels = NetworkShape::kChannels;
-constexpr int kBatch = kernels::kBatch;
+using kernels::kBatch;
 
 // More partitions than this wouldn't be shared better by a desktop's cores; fewer batches than that
 // aren't worth a sum of their own, which is cleared and added.
@@ -81,7 +80,7 @@ double SampleSums<T>::MeanAbsLogError(const T* weights) {
   ForEachPartition(inputs_.num_batches(), [&](std::size_t p, std::size_t partitions) {
     BatchedMlp<T> mlp(shape_, 0);
     TermBatch batch(error_term_->rows());
-    AlignedVector<double> z(kChannels * kBatch);
+    AlignedVector<double> z(NetworkShape::kChannels * kBatch);
     for (std::size_t b = p; b < inputs_.num_batches(); b += partitions) {
       mlp.Forward(weights, inputs_.batch(b));
       std::transform(mlp.output(), mlp.output() + z.size(), z.begin(),
@@ -90,12 +89,13 @@ double SampleSums<T>::MeanAbsLogError(const T* weights) {
       error_term_->EvaluateResiduals(b, size, z.data(), &batch);
       double sum = 0.0;
       for (int n = 0; n < size; ++n) {
-        for (int c = 0; c < kChannels; ++c) sum += std::abs(batch.residuals[c * kBatch + n]);
+        for (int c = 0; c < NetworkShape::kChannels; ++c)
+          sum += std::abs(batch.residuals[c * kBatch + n]);
       }
       sums[p] += sum;
     }
   });
-  return Total(sums) / static_cast<double>(kChannels * inputs_.size());
+  return Total(sums) / static_cast<double>(NetworkShape::kChannels * inputs_.size());
 }
 
 template <typename T>

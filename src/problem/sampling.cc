@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
+#include "base/pi.h"
 #include "base/uniform.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/half_diff.h"
@@ -15,8 +15,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kBatch = 1024;
+constexpr std::size_t kDrawnTogether = 1024;
 constexpr std::size_t kDrawsPerKnown = 10000;
 constexpr std::size_t kHeldOutOneIn = 8, kFewestToHoldOut = 100;
 constexpr std::size_t kFewMeasurements = 3000, kMeasuredToInterpolated = 3;
@@ -163,7 +162,7 @@ void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* sample
   const std::size_t end = samples->size() + count;
   samples->reserve(end);
   std::vector<DirectionPair> pairs;
-  std::vector<Rgb> values(kBatch);
+  std::vector<Rgb> values(kDrawnTogether);
   for (std::size_t drawn = 0; samples->size() < end; ++drawn) {
     const std::size_t missing = end - samples->size();
     if (drawn >= kDrawsPerKnown * (count - missing + 100)) {
@@ -172,7 +171,7 @@ void SampleStream::DrawAngles(std::size_t count, std::vector<BrdfSample>* sample
     DirectionPair pair = DrawPair();
     if (set_ == SampleSet::kTraining) MoveToMeasured(&pair);
     if (brdf_.IsKnown(pair)) pairs.push_back(pair);
-    if (pairs.size() < std::min(kBatch, missing)) continue;
+    if (pairs.size() < std::min(kDrawnTogether, missing)) continue;
     brdf_.EvaluateUnclipped(pairs, std::span(values).first(pairs.size()));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       // The square root leaves interpolated values more of a say: pictures are made of them, too.

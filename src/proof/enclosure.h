@@ -13,7 +13,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "base/pi.h"
 
 namespace pbnbrdf {
 
@@ -175,7 +176,6 @@ Enclosure<D> floor(const Enclosure<D>& x) {
 // Of an angle within [-4 pi, 4 pi].
 template <int D>
 Enclosure<D> cos(const Enclosure<D>& x) {
-  constexpr double kPi = std::numbers::pi;
   const auto cosines = [](const Interval& at) {
     Interval values = {std::min(std::cos(at.low), std::cos(at.high)),
                        std::max(std::cos(at.low), std::cos(at.high))};
@@ -192,7 +192,6 @@ Enclosure<D> cos(const Enclosure<D>& x) {
 
 template <int D>
 Enclosure<D> sin(const Enclosure<D>& x) {
-  constexpr double kPi = std::numbers::pi;
   return cos(x - kPi / 2);
 }
 

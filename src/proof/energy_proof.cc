@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/pi.h"
 #include "base/timer.h"
 #include "proof/piece.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kChannels = NetworkShape::kChannels;
 
 // The first pieces. The merl encoding has kinks at multiples of 1 / kMerlRows of t, where pieces have to end.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "proof/network_enclosure.h"
 
 namespace pbnbrdf {
@@ -51,7 +51,6 @@ struct Integrand {
 template <int D>
 Integrand<D> IntegrandOn(Encoding encoding, const Box<D>& box) {
   using V = Enclosure<D>;
-  constexpr double kPi = std::numbers::pi;
   const auto variable = [&](int d) { return V::Variable(d, box.center[d], box.radius[d]); };
   const V t = variable(kT), phi = variable(kPhi), theta_i = variable(kThetaI);
   const V theta_h = (kPi / 2.0) * t * t;

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/brdf/luminance.h"
 #include "sky.h"
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Chooses an interval between running sums in proportion to its length, and sets *within, in [0, 1),
 // to the place in it. An empty interval is never chosen, whatever the rounding.

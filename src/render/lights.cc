@@ -11,7 +11,7 @@ namespace {
 // pbrt's shadow rays do.
 constexpr double kShadowRayPart = 1.0 - 1e-4;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
 
 // The area of the light times the cosine between its normal and the way back along `direction`.
 double ProjectedArea(const RectangleLight& light, const Vec3& direction) {
@@ -42,7 +42,7 @@ bool Lights::Sample(const Vec3& position, Random* random, LightSample* sample) c
       Rgb radiance;
       const Vec3 direction = scene_.environment->Sample(random->Pair(), &pdf, &radiance);
       pdf /= count;
-      *sample = {direction, kInfinity, (1.0 / pdf) * radiance, pdf};
+      *sample = {direction, kInfinitelyFar, (1.0 / pdf) * radiance, pdf};
       return true;
     }
     case Kind::kRectangle:
@@ -57,7 +57,7 @@ bool Lights::Sample(const Vec3& position, Random* random, LightSample* sample) c
     }
     case Kind::kDirectional: {
       const DirectionalLight& light = scene_.directional_lights[choice.number];
-      *sample = {-1.0 * light.direction, kInfinity, count * light.irradiance, 0.0};
+      *sample = {-1.0 * light.direction, kInfinitelyFar, count * light.irradiance, 0.0};
       return true;
     }
   }

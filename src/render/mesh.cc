@@ -10,7 +10,7 @@ namespace pbnbrdf {
 namespace {
 
 // 4 GiB: more triangles than fit in memory with Embree's tree about them.
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;
+constexpr std::uintmax_t kMaxMeshBytes = std::uintmax_t{4} << 30;
 
 // The least ratio of a triangle's double area to its longest edge squared. Where it is less, rounding
 // of the corners decides the normal.
@@ -25,7 +25,7 @@ bool HasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 TriangleMesh ReadMesh(const std::string& path) {
-  const std::string bytes = ReadFile(path, kMaxFileBytes);
+  const std::string bytes = ReadFile(path, kMaxMeshBytes);
   return About(path, [&] {
     const PolygonMesh polygons = bytes.starts_with("ply") ? ParsePly(bytes) : ParseObj(bytes);
     if (polygons.face_ends.empty()) Fail("no faces: neither PLY nor Wavefront OBJ");

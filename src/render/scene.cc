@@ -14,7 +14,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 64 << 20;  // a scene of 300,000 spheres
+constexpr std::uintmax_t kMaxSceneBytes = 64 << 20;  // a scene of 300,000 spheres
 constexpr int kMaxFilmSide = 32768;  // with kMaxPixels, up to 8 times as wide as high
 
 // Rounding alone leaves sines of 1e-16, and relative determinants likewise; what is below these bounds
@@ -275,7 +275,7 @@ class SceneReader {
 }  // namespace
 
 Scene ReadScene(const std::string& path, const SceneChanges& changes) {
-  const std::string text = ReadFile(path, kMaxFileBytes);
+  const std::string text = ReadFile(path, kMaxSceneBytes);
   return About(
       path, [&] { return ParseScene(text, std::filesystem::path(path).parent_path(), changes); });
 }

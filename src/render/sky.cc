@@ -1,14 +1,13 @@
 #include "sky.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "rgb.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // Texels of 0.35 degrees, with 4 x 4 directions each, resolve the real sun, of 0.53 degrees.
 constexpr int kWidth = 1024, kHeight = 512, kSub = 4;
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/brdf/luminance.h"
 
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kRows = 256;  // over theta, twice as many over phi; the sun is a few of them wide
 
 std::vector<Vec3> FibonacciLattice(int count) {

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/parallel.h"
+#include "base/pi.h"
 #include "kernels/cholesky.h"
 #include "network/batched_mlp.h"
 #include "pbnbrdf/brdf/albedo.h"
@@ -14,7 +14,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr AlbedoGrid kGrid = {
     .angles = 160, .tolerance = 1e-5, .excess_tolerance = 0.1, .n_phi = 64};
 constexpr double kMinStep = 1e-7;  // of log(1 + f)

@@ -4,9 +4,9 @@
 // end is removed exactly.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "base/pi.h"
 #include "base/timer.h"
 #include "pbnbrdf/brdf/albedo.h"
 #include "solve/energy_constraints.h"
@@ -15,8 +15,6 @@
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Found on bright metals and on materials scaled to an albedo of 0.99 to 1 (experiments/ablation).
 constexpr int kMaxRounds = 24, kRoundIterations = 12, kHastyIterations = 4;

@@ -27,7 +27,7 @@ constexpr int kMaxRisingSteps = 5;  // Ceres' default (max_consecutive_nonmonoto
 constexpr double kMaxRise = 4.0;    // of the cost over the least one so far
 // The damping is relative to the diagonal of J'J in weights scaled by 1 / (1 + |J_i|), and there at
 // least this: Ceres' default (min_lm_diagonal).
-constexpr double kMinDiagonal = 1e-6;
+constexpr double kMinScaledDiagonal = 1e-6;
 
 // A step d + a / 2 follows the residuals' bend if the acceleration a is at most so long, against d, in the
 // norm of the damping; else it is d. 0.75 in [2].
@@ -225,7 +225,7 @@ class LevenbergMarquardt {
     damping_.resize(p);
     for (std::size_t i = 0; i < p; ++i) {
       const double scaled = scale_[i] * scale_[i] * Diagonal(i);
-      damping_[i] = std::max(scaled, kMinDiagonal) / (radius_ * scale_[i] * scale_[i]);
+      damping_[i] = std::max(scaled, kMinScaledDiagonal) / (radius_ * scale_[i] * scale_[i]);
       double* row = cholesky_.row(static_cast<int>(i));
       std::copy_n(&at_.hessian[i * p], i + 1, row);
       row[i] += damping_[i];

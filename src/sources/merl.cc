@@ -4,8 +4,8 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/base/files.h"
 #include "pbnbrdf/brdf/half_diff.h"
@@ -16,7 +16,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "MERL files are little-endian");
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::array<double, 3> kScale = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 constexpr std::size_t kHeaderBytes = 3 * sizeof(std::int32_t);
 constexpr std::size_t kBinBytes = 3 * sizeof(double);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/base/error.h"
 #include "sources/cie.h"
 #include "sources/rgl_square.h"
@@ -14,7 +14,6 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLeastJacobian = 1e-6;
 constexpr double kDegree = kPi / 180.0;
 constexpr double kLastKnown = 85.0 * kDegree, kLastEstimated = 89.4 * kDegree;

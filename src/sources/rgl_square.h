@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/pi.h"
 #include "pbnbrdf/brdf/direction.h"
 #include "sources/warp_tables.h"
 
@@ -26,7 +27,6 @@ inline double AzimuthRow(double phi) {
 
 // The direction at a point; turn: what its azimuth is counted from.
 inline Vec3 DirectionAt(const SquarePoint& point, double turn) {
-  constexpr double kPi = std::numbers::pi;
   return FromSpherical(0.5 * kPi * point.x * point.x, (2.0 * point.y - 1.0) * kPi + turn);
 }
 

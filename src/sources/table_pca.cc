@@ -11,8 +11,8 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{2}
-                                        << 30;  // bytes; kMaxComponents have 1.2 GB
+constexpr std::uintmax_t kMaxTableBytes = std::uintmax_t{2}
+                                          << 30;  // bytes; kMaxComponents have 1.2 GB
 
 std::vector<float> FloatsOf(const SafetensorsFile& file, const std::string& name) {
   const std::vector<double>& values = TensorOf(file, name).values;
@@ -50,7 +50,7 @@ TablePca::TablePca(std::vector<float> median, std::vector<float> mean,
 }
 
 TablePca TablePca::Read(const std::string& path) {
-  const SafetensorsFile file = ReadSafetensors(path, kMaxFileSize);
+  const SafetensorsFile file = ReadSafetensors(path, kMaxTableBytes);
   return About(path, [&] {
     if (MetadataOf(file, "format") != kFormat) {
       Fail("not principal components: its format is another");

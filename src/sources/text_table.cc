@@ -9,7 +9,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{4} << 30;  // bytes
+constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{4} << 30;  // bytes
 constexpr std::string_view kBlanks = " \t";
 constexpr std::string_view kMissing[] = {"",     "nan",  "-nan", "na", "n/a",
                                          "#n/a", "null", "none", "-",  "--"};
@@ -75,7 +75,7 @@ TextTable::TextTable(std::string path, std::string text, Cells cells)
 }
 
 TextTable TextTable::Read(const std::string& path, Cells cells) {
-  return TextTable(path, ReadFile(path, kMaxFileSize), cells);
+  return TextTable(path, ReadFile(path, kMaxTextBytes), cells);
 }
 
 bool TextTable::Next() {

@@ -1,7 +1,6 @@
 #include "pbnbrdf/metrics/coverage.h"
 
 #include <bit>
-#include <numbers>
 #include <random>
 
 #include "base/uniform.h"
@@ -10,8 +9,6 @@
 
 namespace pbnbrdf {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // 0.2, and known where theta_i is below an angle only; with noise that differs from direction to direction.
 class GreyBrdf final : public Brdf {
