@@ -43,7 +43,7 @@ Fields OptionFields(FitOptions* options) {
              "factor by which the training samples grow each time that the cost falls slowly"));
   fields.Add(
       Integer("first_weights", &schedule->first_weights, AtLeast(1),
-              "lm: weights of the narrower network to start with; all of them, or more: none"));
+              "lm: a network of more weights than this starts as a narrower one, which grows"));
   fields.Add(Integer("starts", &schedule->starts, AtLeast(1),
                      "number of random initial weights to try; the fit goes on with the best"));
   fields.Add(Integer("curvature_samples", &schedule->curvature_samples, AtLeast(1),

@@ -4,7 +4,7 @@ namespace pbnbrdf {
 namespace {
 
 constexpr int kMaxSecondOrderWeights = 10000;  // J'J then has 800 MB
-constexpr int kMaxLmWeights = 2500;            // a fit takes 400 MB, an iteration 0.2 s
+constexpr int kMaxLmWeights = 2500;            // a fit takes up to 370 MB
 
 constexpr Solver kSolvers[] = {
     {"lm",

@@ -59,8 +59,8 @@ struct SolverTraits {
   bool is_stochastic = false;
   bool splits_curvature = false;  // sums J'J over a part of the samples (StageOptions)
   int max_weights = 0;            // whose square it holds in memory; 0: any number
-  // Starts with a narrow network (ScheduleOptions::first_weights), and leaves one of more than max_weights to the
-  // solver of this name; "": takes no more.
+  // Networks start narrow (ScheduleOptions::first_weights), and go to the solver of this name when they have more
+  // than max_weights; "": it takes no wider ones.
   std::string_view wide_solver = "";
   int pace = 1;  // iterations that do as much as one of Levenberg-Marquardt
 };

@@ -56,8 +56,8 @@ struct AdamOptions {
 
 struct FitOptions {
   // By name:
-  //   lm           Levenberg-Marquardt on the normal equations (lm.cc); ceres_lbfgs ends fits of more than
-  //                2500 weights, whose narrower networks it has fitted
+  //   lm           Levenberg-Marquardt on the normal equations (lm.cc); ceres_lbfgs goes on with networks of
+  //                more than 2500 weights
   //   ceres_lm     Ceres' own: the same steps, at several times the cost
   //   ceres_lbfgs  Ceres' L-BFGS: cheap iterations, but thousands of them
   //   adam         on minibatches of the papers' own loss (adam.cc), the published solver
