@@ -9,7 +9,7 @@
 namespace pbnbrdf {
 namespace {
 
-constexpr int kRows = 256;  // over theta, twice as many over phi; the sun is a few of them wide
+constexpr int kSkyRows = 256;  // over theta, twice as many over phi; the sun is a few of them wide
 
 std::vector<Vec3> FibonacciLattice(int count) {
   std::vector<Vec3> points;
@@ -35,11 +35,11 @@ std::vector<DistantLight> LightSet(const std::function<Rgb(const Vec3&)>& radian
   const std::vector<Vec3> points = FibonacciLattice(count);
   std::vector<Rgb> irradiance(points.size());
   std::vector<Vec3> towards(points.size());
-  for (int row = 0; row < kRows; ++row) {
-    const double theta = kPi * (row + 0.5) / kRows;
-    const double solid_angle = std::sin(theta) * (kPi / kRows) * (kPi / kRows);
-    for (int column = 0; column < 2 * kRows; ++column) {
-      const Vec3 local = FromSpherical(theta, kPi * (column + 0.5) / kRows);
+  for (int row = 0; row < kSkyRows; ++row) {
+    const double theta = kPi * (row + 0.5) / kSkyRows;
+    const double solid_angle = std::sin(theta) * (kPi / kSkyRows) * (kPi / kSkyRows);
+    for (int column = 0; column < 2 * kSkyRows; ++column) {
+      const Vec3 local = FromSpherical(theta, kPi * (column + 0.5) / kSkyRows);
       const Vec3 direction = {local.x, local.z, local.y};  // +y is up
       const std::size_t n = Nearest(points, direction);
       const Rgb light = radiance(direction);
