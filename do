@@ -32,7 +32,7 @@ install_packages() {
     > /dev/null
 }
 
-# configure FOLDER [CMAKE_OPTION ...]. Eight files of a module are compiled as one, which halves the time; `separate`
+# configure FOLDER [CMAKE_OPTION ...]. Eight files of a module are compiled as one, which takes a third off the time; `separate`
 # shows that each file includes what it uses.
 separate="-DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"
 configure() {

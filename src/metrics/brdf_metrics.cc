@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/pi.h"
+#include "metrics/mean.h"
 #include "pbnbrdf/brdf/half_diff.h"
 #include "pbnbrdf/metrics/color.h"
 
@@ -32,12 +33,6 @@ Rgb LitColor(const Rgb& f, double cos_i) {
   Rgb color;
   for (int c = 0; c < 3; ++c) color[c] = std::clamp(kPi * f[c] * cos_i, 0.0, 1.0);
   return color;
-}
-
-double MeanOrZero(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
 // The least of the values that so many of them don't exceed; NaN counts as the largest.
@@ -157,9 +152,9 @@ ColorErrors MeasureColorErrors(std::span<const BrdfSample> reference, const Brdf
   ColorErrors errors;
   errors.samples = delta_e.size();
   errors.dark_samples = dark.size();
-  errors.delta_e_mean = MeanOrZero(delta_e);
+  errors.delta_e_mean = Mean(delta_e);
   errors.delta_e_p95 = Percentile(std::move(delta_e));
-  errors.dark_hue_chroma_mean = MeanOrZero(dark);
+  errors.dark_hue_chroma_mean = Mean(dark);
   errors.dark_hue_chroma_p95 = Percentile(std::move(dark));
   return errors;
 }

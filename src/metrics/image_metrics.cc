@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "image/srgb.h"
+#include "metrics/mean.h"
 #include "metrics/planes.h"
 #include "pbnbrdf/base/error.h"
 #include "pbnbrdf/metrics/color.h"
@@ -97,10 +97,6 @@ double MeanDeltaE(const Image& reference, const Image& test) {
   return sum / (double(reference.width) * double(reference.height));
 }
 
-double MeanError(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-}
-
 void CheckFinite(const Image& image, const std::string& name) {
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     if (std::isfinite(image.rgb[i])) continue;
@@ -162,9 +158,9 @@ ImageErrors CompareImages(const Image& reference, const Image& test) {
 
   const Image linear_reference = ShownLinear(reference, errors.exposure);
   const Image linear_test = ShownLinear(test, errors.exposure);
-  errors.flip = MeanError(FlipMap(linear_reference, linear_test));
+  errors.flip = Mean(FlipMap(linear_reference, linear_test));
   errors.delta_e_2000 = MeanDeltaE(linear_reference, linear_test);
-  errors.hdr_flip = MeanError(HdrFlipMap(reference, test));
+  errors.hdr_flip = Mean(HdrFlipMap(reference, test));
   return errors;
 }
 

@@ -213,13 +213,9 @@ void Training::TakeMoreWeights() {
   WidenTo(hidden == problem_.network.hidden ? hidden_ : hidden);
 }
 
-void Training::TakeAllWeights() {
-  if (!HasAllWeights()) WidenTo(hidden_);
-}
-
-void Training::WidenTo(std::vector<int> hidden) {
+void Training::WidenTo(const std::vector<int>& hidden) {
   const NetworkShape narrow = shape();
-  problem_.network.hidden = std::move(hidden);
+  problem_.network.hidden = hidden;
   const std::vector<double> fresh =
       InitialWeights(shape(), samples_.samples(), problem_.sampling.seed + kWideningSeed,
                      problem_.network.initialization);
@@ -296,7 +292,7 @@ double Training::RecordError(int iteration) {
 
 void Training::Finish() {
   summary_.energy.work = objective_->energy_work();
-  TakeAllWeights();
+  if (!HasAllWeights()) WidenTo(hidden_);
   summary_.seconds = timer_.Seconds();
   summary_.samples = samples_.size();
   summary_.precision_limited = options_.precision == Precision::kSingle && !AgreesInDouble();

@@ -49,7 +49,6 @@ class Training {
   // A wider network is the same function at first.
   bool HasAllWeights() const { return problem_.network.hidden == hidden_; }
   void TakeMoreWeights();
-  void TakeAllWeights();
 
   // Whether J'J is summed over a part of the samples, and may be over more of them: not with the energy
   // term, whose rounds needn't be exact.
@@ -75,13 +74,13 @@ class Training {
   // ValidationError(), which the summary's history keeps.
   double RecordError(int iteration);
 
-  // Completes the summary.
+  // Completes the network, and the summary.
   void Finish();
 
  private:
   // Of the first `count` samples.
   void MakeObjectives(std::size_t count);
-  void WidenTo(std::vector<int> hidden);
+  void WidenTo(const std::vector<int>& hidden);
   double SecondsLeft() const;  // until the clock ends the fit
   bool AgreesInDouble();
 
